@@ -1,0 +1,181 @@
+// The only file that knows Python.
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/unique_ptr.h>
+
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <tuple>
+
+#include "engine.hpp"
+
+namespace nb = nanobind;
+using carom::Engine;
+using carom::Vec3;
+
+namespace {
+
+using Vectors = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Numbers = nb::ndarray<const double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Flags = nb::ndarray<const bool, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Images = nb::ndarray<const int32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Counts = nb::ndarray<const uint32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Three = nb::ndarray<const double, nb::shape<3>, nb::c_contig, nb::device::cpu>;
+using WallRows = nb::ndarray<const double, nb::shape<-1, 7>, nb::c_contig, nb::device::cpu>;
+
+Vec3 three(const Three& a) { return {a(0), a(1), a(2)}; }
+Vec3 row(const Vectors& a, size_t i) { return {a(i, 0), a(i, 1), a(i, 2)}; }
+
+// Hands a vector over to NumPy without a copy.
+template <class T, class... Shape>
+auto array_of(std::vector<T>&& data, Shape... shape) {
+    auto* held = new std::vector<T>(std::move(data));
+    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
+    return nb::ndarray<nb::numpy, T>(held->data(), {size_t(shape)...}, owner);
+}
+
+std::vector<carom::StartSphere> spheres(const Vectors& position, const Numbers& radius,
+                                        const Flags& fixed) {
+    std::vector<carom::StartSphere> out(position.shape(0));
+    if (radius.shape(0) != out.size() || fixed.shape(0) != out.size())
+        throw nb::value_error("arrays of different lengths");
+    for (size_t i = 0; i < out.size(); ++i) {
+        out[i].position = row(position, i);
+        out[i].radius = radius(i);
+        out[i].fixed = fixed(i);
+    }
+    return out;
+}
+
+// One row per wall: kind, bounce-back, normal (3), offset, restitution.
+std::vector<carom::Wall> walls_from(const WallRows& rows) {
+    std::vector<carom::Wall> walls;
+    for (size_t k = 0; k < rows.shape(0); ++k)
+        walls.push_back({carom::WallKind(int(rows(k, 0))), rows(k, 1) != 0,
+                         Vec3{rows(k, 2), rows(k, 3), rows(k, 4)}, rows(k, 5), rows(k, 6)});
+    return walls;
+}
+
+auto make_engine(const Vectors& position, const Vectors& velocity, const Numbers& mass,
+                 const Numbers& radius, const Flags& fixed, const Flags& resting,
+                 const Images& image, const Counts& count, double time, const Three& period,
+                 const WallRows& walls, double restitution, double contact_time,
+                 const Three& gravity, bool collide, double margin, double cell, bool log,
+                 double slice) {
+    std::vector<carom::StartSphere> start = spheres(position, radius, fixed);
+    const size_t n = start.size();
+    if (velocity.shape(0) != n || mass.shape(0) != n || resting.shape(0) != n ||
+        image.shape(0) != n || count.shape(0) != n || n == 0)
+        throw nb::value_error("arrays of different lengths, or no sphere");
+    for (size_t i = 0; i < n; ++i) {
+        start[i].velocity = row(velocity, i);
+        start[i].mass = mass(i);
+        start[i].resting = resting(i);
+        start[i].image = {image(i, 0), image(i, 1), image(i, 2)};
+        start[i].count = count(i);
+    }
+    const carom::World world{three(period), walls_from(walls), restitution, contact_time,
+                             three(gravity), collide};
+    const nb::gil_scoped_release release;
+    return std::make_unique<Engine>(start, time, world, carom::Tuning{margin, cell, log, slice});
+}
+
+auto state_of(const Engine& engine) {
+    const size_t n = engine.size();
+    std::vector<double> position(3 * n), velocity(3 * n);
+    std::vector<int32_t> image(3 * n);
+    std::vector<uint32_t> count(n);
+    std::vector<uint8_t> resting(n);
+    {
+        const nb::gil_scoped_release release;
+        for (size_t i = 0; i < n; ++i) {
+            const carom::StartSphere s = engine.sphere(int(i));
+            const double x[3] = {s.position.x, s.position.y, s.position.z};
+            const double v[3] = {s.velocity.x, s.velocity.y, s.velocity.z};
+            const int32_t m[3] = {s.image.x, s.image.y, s.image.z};
+            std::copy(x, x + 3, &position[3 * i]);
+            std::copy(v, v + 3, &velocity[3 * i]);
+            std::copy(m, m + 3, &image[3 * i]);
+            count[i] = s.count;
+            resting[i] = s.resting;
+        }
+    }
+    return nb::make_tuple(array_of(std::move(position), n, 3), array_of(std::move(velocity), n, 3),
+                          array_of(std::move(image), n, 3), array_of(std::move(count), n),
+                          array_of(std::move(resting), n));
+}
+
+auto take_log(Engine& engine) {
+    double start = 0;
+    const std::vector<carom::Record> log = engine.take_log(start);
+    std::vector<uint8_t> bytes(log.size() * sizeof(carom::Record));
+    if (!log.empty()) std::memcpy(bytes.data(), log.data(), bytes.size());
+    const size_t n = bytes.size();
+    return nb::make_tuple(start, array_of(std::move(bytes), n));
+}
+
+}  // namespace
+
+NB_MODULE(_core, m) {
+    m.doc() = "The event loop in C++: moves spheres from one collision to the next.";
+
+    nb::class_<Engine>(m, "Engine", "Moves spheres from one collision to the next.")
+        .def(nb::new_(&make_engine), nb::arg("position"), nb::arg("velocity"), nb::arg("mass"),
+             nb::arg("radius"), nb::arg("fixed"), nb::arg("resting"), nb::arg("image"),
+             nb::arg("count"), nb::arg("time"), nb::arg("period"), nb::arg("walls"),
+             nb::arg("restitution"), nb::arg("contact_time"), nb::arg("gravity"),
+             nb::arg("collide"), nb::arg("margin") = 0.0, nb::arg("cell") = 0.0,
+             nb::arg("log") = true, nb::arg("slice") = 0.05)
+        .def(
+            "advance",
+            [](Engine& e, double until, int64_t max_collisions, int64_t max_events) {
+                return int(e.advance(until, max_collisions, max_events));
+            },
+            nb::arg("until"), nb::arg("max_collisions"), nb::arg("max_events"),
+            nb::call_guard<nb::gil_scoped_release>(), "Runs until a time or a count; see Stop.")
+        .def("state", &state_of, "(position, velocity, image, count, resting) at `time`.")
+        .def("take_log", &take_log, "(start time, records as bytes) since the last call.")
+        .def("max_overlap", &Engine::max_overlap, "Deepest overlap met, in contact distances.")
+        .def("check", &Engine::check, "Raises if two structures contradict one another.")
+        .def(
+            "checkpoint",
+            [](const Engine& e) {
+                const std::string s = e.checkpoint();
+                return nb::bytes(s.data(), s.size());
+            },
+            "The stored states, for the same bits after a restart.")
+        .def(
+            "restore",
+            [](Engine& e, const nb::bytes& b) { e.restore(std::string(b.c_str(), b.size())); },
+            nb::arg("checkpoint"), "Continues from a checkpoint of the same scene.")
+        .def_prop_ro("time", &Engine::time, "Simulated time now.")
+        .def_prop_ro("collisions", &Engine::collisions, "Between spheres.")
+        .def_prop_ro("wall_collisions", &Engine::wall_collisions, "With walls.")
+        .def_prop_ro("dissipated", &Engine::dissipated, "Energy the rules have taken.")
+        .def_prop_ro("withheld", &Engine::withheld, "Energy the contact-time cure kept.")
+        .def_prop_ro("bytes", &Engine::bytes, "Memory in use.")
+        .def_prop_ro(
+            "collapse",
+            [](const Engine& e) -> std::optional<std::tuple<double, int, int>> {
+                const carom::Collapse& c = e.collapse();
+                if (c.i == carom::kNone) return std::nullopt;
+                return std::make_tuple(c.time, c.i, c.j);
+            },
+            "(time, i, j) of an inelastic collapse, or None.");
+
+    m.def(
+        "first_overlap",
+        [](const Vectors& position, const Numbers& radius, const Flags& fixed,
+           const Three& period) -> std::optional<std::tuple<int, int, double>> {
+            const carom::Overlap o = carom::first_overlap(spheres(position, radius, fixed),
+                                                          three(period));
+            if (o.i == carom::kNone) return std::nullopt;
+            return std::make_tuple(o.i, o.j, o.depth);
+        },
+        nb::arg("position"), nb::arg("radius"), nb::arg("fixed"), nb::arg("period"),
+        "The deepest overlapping pair (i, j, depth), or None.");
+}

@@ -1,0 +1,164 @@
+// What an event does. The rule gives an impulse; here alone it is applied, to both partners.
+#include "engine.hpp"
+
+namespace carom {
+
+void Engine::execute(int i) {
+    const Event e = events_[size_t(i)];
+    ++epoch_events_;
+    if (e.partner < 0) {
+        hit_wall(i, -1 - e.partner, e.t);
+        ++wall_collisions_;
+        refresh(i);
+        return;
+    }
+    const Image m = e.m;
+    const int32_t lo = std::min(i, e.partner), hi = std::max(i, e.partner);
+    collide(lo, hi, i == lo ? m : Image{} - m, e.t);
+    ++collisions_;
+    refresh(lo);
+    refresh(hi);
+}
+
+// After its state changed: a new prediction, and a new shell if the old one holds a crowd.
+void Engine::refresh(int i) {
+    if (shells_on_ && crowded(i)) make_shell(i);
+    predict(i);
+}
+
+void Engine::collide(int32_t i, int32_t j, Image m, double t) {
+    const Motion p = motion(i, t), q = motion(j, t);
+    const Vec3 r = p.x - q.x - shift(m, world_.period), v = p.v - q.v;
+    Body &a = bodies_[size_t(i)], &b = bodies_[size_t(j)];
+    const double ri = spheres_[size_t(i)].r, rj = spheres_[size_t(j)].r;
+    const double distance = norm(r), speed = std::min(0.0, dot(r, v) / distance);
+    const double mu = 1 / (a.inverse_mass + b.inverse_mass);
+    deepest_ = std::max(deepest_, (ri + rj - distance) / (ri + rj));
+
+    const double nominal = world_.restitution;
+    const double e = recent(i, t) || recent(j, t) ? 1 : nominal;
+    Vec3 impulse;
+    double least = 0;  // rebound speed below which one would rest on the other
+    if (falls_[size_t(i)] != falls_[size_t(j)]) {
+        const double press = -dot(acceleration(i) - acceleration(j), r) / distance;
+        least = rebound_floor(press, least_rise(nominal, std::min(ri, rj)));
+    }
+    const bool hop = e * -speed < least;
+    if (hop) {
+        impulse = r * (mu * (least - speed) / distance);
+        dissipated_ += 0.5 * mu * (speed * speed - least * least);
+    } else {
+        impulse = smooth_impulse(r, v, mu, e);
+        if (e < 1)
+            dissipated_ += 0.5 * mu * (1 - e * e) * speed * speed;
+        else if (nominal < 1)
+            withheld_ += 0.5 * mu * (1 - nominal * nominal) * speed * speed;
+    }
+
+    const Image unwrapped = m + a.image - b.image;
+    a.last = j, b.last = i;
+    a.last_image = unwrapped, b.last_image = Image{} - unwrapped;
+    log(t, i, j, impulse);
+    anchor(i, p.x, p.v + impulse * a.inverse_mass, t);
+    anchor(j, q.x, q.v - impulse * b.inverse_mass, t);
+    wake(i, impulse, t);
+    wake(j, impulse, t);
+    if (e < 1 && !hop) watch(i, j, t, norm(v));
+}
+
+void Engine::hit_wall(int32_t i, int k, double t) {
+    const Wall& w = world_.walls[size_t(k)];
+    const Motion at = motion(i, t);
+    Body& body = bodies_[size_t(i)];
+    const double r = spheres_[size_t(i)].r, mass = 1 / body.inverse_mass;
+    const double e = recent(i, t) ? 1 : w.restitution;
+
+    // Not normalised: v - (1+e) (v.d) d / d^2 keeps the energy at e = 1 whatever |d| rounds to.
+    const Vec3 d = w.kind == WallKind::plane ? w.normal : -across(w, at.x);
+    const double length = norm(d), speed = std::min(0.0, dot(at.v, d) / length);
+    double press = std::max(0.0, -dot(acceleration(i), d) / length);
+    if (w.kind != WallKind::plane && w.restitution < 1) {
+        // Following a curve presses onto it too.
+        press += (norm2(across(w, at.v)) - speed * speed) / (w.offset - r);
+    }
+    const double least = rebound_floor(press, least_rise(w.restitution, r));
+    const bool lasting = e * -speed < least;
+    const bool rests = lasting && w.kind == WallKind::plane &&
+                       norm(cross(world_.gravity, d)) <= 1e-12 * norm(world_.gravity) * length;
+
+    Vec3 v = at.v;
+    if (lasting) {
+        const double out = rests ? 0 : least;
+        if (w.bounce_back) v = (v - d * (speed / length)) * -e + d * (out / length);
+        else v += d * ((out - speed) / length);
+    } else if (w.bounce_back) {
+        v = v * -e;
+    } else {
+        v += d * (-(1 + e) * (std::min(0.0, dot(v, d)) / norm2(d)));
+    }
+    if (lasting || e < 1)
+        dissipated_ += 0.5 * mass * (norm2(at.v) - norm2(v));
+    else if (w.restitution < 1)
+        withheld_ += 0.5 * mass * (1 - w.restitution * w.restitution) *
+                     (w.bounce_back ? norm2(at.v) : speed * speed);
+
+    const Vec3 impulse = (v - at.v) * mass;
+    body.last = wall_code(k);
+    log(t, i, rests ? kCameToRest - k : wall_code(k), impulse);
+    anchor(i, at.x, v, t);
+    if (rests) {
+        body.rests_on = k;
+        falls_[size_t(i)] = 0;
+    } else {
+        wake(i, impulse, t);
+    }
+    if (e < 1 && !lasting) watch(i, wall_code(k), t, -speed);
+}
+
+// The sphere leaves its last event from x with velocity v.
+void Engine::anchor(int32_t i, const Vec3& x, const Vec3& v, double t) {
+    Sphere& s = spheres_[size_t(i)];
+    s.x = x;
+    s.v = v;
+    s.t = t;
+    wrap(i);
+    ++events_[size_t(i)].count;
+    if (!last_touch_.empty()) last_touch_[size_t(i)] = t;
+}
+
+void Engine::wrap(int32_t i) {
+    if (!periodic_) return;
+    Sphere& s = spheres_[size_t(i)];
+    const Vec3 boxes = whole_boxes(s.x);
+    s.x -= boxes * world_.period;
+    bodies_[size_t(i)].image = bodies_[size_t(i)].image + to_image(boxes);
+}
+
+// An impulse across the wall it rests on sets a sphere free.
+void Engine::wake(int32_t i, const Vec3& impulse, double t) {
+    Body& body = bodies_[size_t(i)];
+    if (body.rests_on < 0) return;
+    if (dot(impulse, world_.walls[size_t(body.rests_on)].normal) == 0) return;
+    body.rests_on = -1;
+    falls_[size_t(i)] = 1;
+    log(t, i, kWoke, {});
+}
+
+bool Engine::recent(int32_t i, double t) const {
+    return !last_touch_.empty() && t - last_touch_[size_t(i)] < world_.contact_time;
+}
+
+void Engine::watch(int32_t i, int32_t j, double t, double speed) {
+    for (const int32_t k : {i, j}) {
+        if (k < 0 || bodies_[size_t(k)].inverse_mass == 0) continue;
+        if (watches_[size_t(k)].collapsed(t, speed, spheres_[size_t(k)].r) &&
+            collapse_.i == kNone)
+            collapse_ = {clock_.time(t), i, j};
+    }
+}
+
+void Engine::log(double t, int32_t i, int32_t j, const Vec3& impulse) {
+    if (logging_) log_.push_back({t - log_shift_, i, j, impulse});
+}
+
+}  // namespace carom

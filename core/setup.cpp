@@ -1,0 +1,277 @@
+// Building: shells and cells from the density, epochs from the speeds, checkpoints.
+#include <cstring>
+#include <stdexcept>
+
+#include "engine.hpp"
+
+namespace carom {
+
+namespace {
+
+constexpr double kSpherical = 4.18879020478639098;  // 4 pi / 3
+
+double median_radius(const std::vector<Sphere>& spheres) {
+    std::vector<double> r;
+    r.reserve(spheres.size());
+    for (const Sphere& s : spheres) r.push_back(s.r);
+    const auto middle = r.begin() + std::ptrdiff_t(r.size() / 2);
+    std::nth_element(r.begin(), middle, r.end());
+    return *middle;
+}
+
+// Extent of the spheres along each axis, or the period where there is one.
+Vec3 extent(const std::vector<Sphere>& spheres, const Vec3& period) {
+    Vec3 lo{kNever, kNever, kNever}, hi{-kNever, -kNever, -kNever};
+    for (const Sphere& s : spheres) {
+        lo = {std::min(lo.x, s.x.x - s.r), std::min(lo.y, s.x.y - s.r),
+              std::min(lo.z, s.x.z - s.r)};
+        hi = {std::max(hi.x, s.x.x + s.r), std::max(hi.y, s.x.y + s.r),
+              std::max(hi.z, s.x.z + s.r)};
+    }
+    const Vec3 d = hi - lo;
+    return {period.x > 0 ? period.x : d.x, period.y > 0 ? period.y : d.y,
+            period.z > 0 ? period.z : d.z};
+}
+
+}  // namespace
+
+// The margin gives a sphere about eleven neighbours, which is near the fastest at every density
+// tried: fewer and shells are remade too often, more and every prediction looks at too many.
+void Engine::choose_shells(const Tuning& tuning) {
+    constexpr double kNeighbours = 11;
+    if (!shells_on_) return;
+    const double r = median_radius(spheres_);
+    double largest = 0, volume = 1, giants = 0;
+    const Vec3 box = extent(spheres_, world_.period);
+    volume = box.x * box.y * box.z;
+    for (const Sphere& s : spheres_) {
+        largest = std::max(largest, s.r);
+        if (s.r > 2 * r) giants += kSpherical * s.r * s.r * s.r;
+    }
+    const double free = std::max(volume - giants, 0.1 * volume);
+    const double shell = std::cbrt(kNeighbours * free / (kSpherical * double(size())));
+    margin_ = std::clamp(0.5 * shell - r, 0.1 * r, 16 * r);
+    if (tuning.margin > 0) margin_ = tuning.margin;
+    most_margin_ = margin_ * std::ldexp(1.0, 60);
+    if (periodic_) {
+        // One image of a neighbour is enough while no other can come within reach.
+        const double single = 0.249 * (half_period_ - 2 * r);
+        if (single >= 0.1 * r) margin_ = std::min(margin_, single);
+        margin_ = std::min(margin_, 0.25 * half_period_);
+        most_margin_ = std::max(margin_, 0.249 * (half_period_ - 2 * largest));
+    }
+    // All on one level if the sizes allow.
+    const double common = largest <= 2 * r ? largest : r;
+    cell_ = tuning.cell > 0 ? tuning.cell : 2 * (common + margin_) * (1 + 1e-9);
+}
+
+// An epoch lasts some dozens of collisions of a sphere. Its exact length does not matter; that it
+// follows from the start state alone does.
+void Engine::choose_epoch(double time) {
+    double energy = 0, section = 0;
+    for (const Sphere& s : spheres_) {
+        energy += norm2(s.v);
+        section += s.r * s.r;
+    }
+    const double n = double(size());
+    const Vec3 box = extent(spheres_, world_.period);
+    const double across = norm(box);
+    double path = box.x * box.y * box.z / (17.7715 * section);  // 1 / (sqrt2 pi n sigma^2)
+    path = std::clamp(path, 0.01 * std::sqrt(section / n), across);
+    double speed = std::sqrt(energy / n);
+    speed = std::max(speed, std::sqrt(norm(world_.gravity) * across));
+    clock_.start(time, speed > 0 && path / speed < 1e100 ? 32 * path / speed : 1.0);
+}
+
+// A sphere said to rest: on the plane across gravity that it is nearest to.
+void Engine::settle(int i) {
+    double nearest_gap = kNever;
+    const Sphere& s = spheres_[size_t(i)];
+    for (size_t k = 0; k < world_.walls.size(); ++k) {
+        const Wall& w = world_.walls[k];
+        if (w.kind != WallKind::plane || dot(w.normal, world_.gravity) >= 0) continue;
+        if (norm(cross(world_.gravity, w.normal)) > 1e-12 * norm(world_.gravity)) continue;
+        const double gap = std::abs(dot(w.normal, s.x) - w.offset - s.r);
+        if (gap > 1e-6 * s.r || gap >= nearest_gap) continue;
+        nearest_gap = gap;
+        bodies_[size_t(i)].rests_on = int32_t(k);
+        falls_[size_t(i)] = 0;
+    }
+}
+
+void Engine::build_shells() {
+    if (!shells_on_) return;
+    const size_t n = size();
+    shells_.resize(n);
+    mark_.assign(n, 0);
+    stamp_ = 0;
+    rows_.reset(n);
+    cells_.reset(cell_, world_.period, n);
+    widest_margin_ = margin_;
+    for (size_t i = 0; i < n; ++i) {
+        shells_[i] = {motion(int(i), now_).x, spheres_[i].r + margin_};
+        found_.clear();
+        cells_.search(shells_[i], shells_, found_);
+        cells_.add(int(i), shells_[i]);
+        for (const int32_t j : found_) {
+            rows_.add(int(i), j);
+            rows_.add(j, int32_t(i));
+        }
+    }
+}
+
+void Engine::predict_all() {
+    for (size_t i = 0; i < size(); ++i) find_event(int(i));
+    calendar_.reset(events_, now_);
+}
+
+// Flies every sphere to the start of the epoch in which offset t falls, anchors it there and
+// predicts everything anew. This is the one change of stored state that is not a collision; it
+// happens when the first physical event beyond the epoch is due, so nobody's bookkeeping moves it.
+void Engine::begin_epoch(double t) {
+    const double step = clock_.advance(t);
+    for (size_t i = 0; i < size(); ++i) {
+        const Motion at = motion(int(i), step);
+        spheres_[i].x = at.x;
+        spheres_[i].v = at.v;
+        spheres_[i].t = 0;
+        wrap(int32_t(i));
+    }
+    for (double& touch : last_touch_) touch -= step;
+    for (Watch& w : watches_) w.start -= step;
+    user_ -= step;
+    log_shift_ -= step;
+    now_ = 0;
+    // A gas that cools or heats keeps its number of collisions per epoch.
+    if (epoch_events_ > 0 && epoch_events_ < 4 * int64_t(size())) clock_.epoch *= 2;
+    if (epoch_events_ > 64 * int64_t(size())) clock_.epoch *= 0.5;
+    epoch_events_ = 0;
+    predict_all();
+}
+
+namespace {
+
+constexpr uint32_t kCheckpointVersion = 1;
+
+class Writer {
+public:
+    template <class T>
+    void one(const T& x) {
+        bytes.append(reinterpret_cast<const char*>(&x), sizeof x);
+    }
+    template <class T>
+    void many(const std::vector<T>& v) {
+        bytes.append(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(T));
+    }
+    std::string bytes;
+};
+
+class Reader {
+public:
+    explicit Reader(const std::string& b) : bytes_(b) {}
+    template <class T>
+    void one(T& x) {
+        take(&x, sizeof x);
+    }
+    template <class T>
+    void many(std::vector<T>& v) {
+        take(v.data(), v.size() * sizeof(T));
+    }
+    bool done() const { return at_ == bytes_.size(); }
+
+private:
+    void take(void* to, size_t n) {
+        if (bytes_.size() - at_ < n) throw std::invalid_argument("the checkpoint is cut short");
+        std::memcpy(to, bytes_.data() + at_, n);
+        at_ += n;
+    }
+    const std::string& bytes_;
+    size_t at_ = 0;
+};
+
+}  // namespace
+
+std::string Engine::checkpoint() const {
+    Writer w;
+    w.one(kCheckpointVersion);
+    w.one(uint64_t(size()));
+    w.one(clock_);
+    w.one(now_);
+    w.one(user_);
+    w.one(epoch_events_);
+    w.one(collisions_);
+    w.one(wall_collisions_);
+    w.one(dissipated_);
+    w.one(withheld_);
+    w.one(deepest_);
+    w.one(collapse_);
+    w.many(spheres_);
+    w.many(bodies_);
+    w.many(falls_);
+    w.many(last_touch_);
+    w.many(watches_);
+    for (const Event& e : events_) w.one(e.count);
+    return w.bytes;
+}
+
+void Engine::restore(const std::string& bytes) {
+    Reader r(bytes);
+    uint32_t version = 0;
+    uint64_t n = 0;
+    r.one(version);
+    r.one(n);
+    if (version != kCheckpointVersion || n != size())
+        throw std::invalid_argument("the checkpoint is of another version or another scene");
+    r.one(clock_);
+    r.one(now_);
+    r.one(user_);
+    r.one(epoch_events_);
+    r.one(collisions_);
+    r.one(wall_collisions_);
+    r.one(dissipated_);
+    r.one(withheld_);
+    r.one(deepest_);
+    r.one(collapse_);
+    r.many(spheres_);
+    r.many(bodies_);
+    r.many(falls_);
+    r.many(last_touch_);
+    r.many(watches_);
+    for (Event& e : events_) r.one(e.count);
+    if (!r.done()) throw std::invalid_argument("the checkpoint is too long");
+    log_.clear();
+    log_start_ = time();
+    log_shift_ = user_;
+    build_shells();
+    predict_all();
+}
+
+Overlap first_overlap(const std::vector<StartSphere>& spheres, const Vec3& period) {
+    Overlap worst;
+    if (spheres.empty()) return worst;
+    std::vector<Sphere> packed;
+    for (const StartSphere& s : spheres) packed.push_back({s.position, 0, s.velocity, s.radius});
+    const Vec3 inverse{period.x > 0 ? 1 / period.x : 0, period.y > 0 ? 1 / period.y : 0,
+                       period.z > 0 ? 1 / period.z : 0};
+    Cells cells;
+    cells.reset(2 * median_radius(packed) * (1 + 1e-9), period, spheres.size());
+    std::vector<Shell> shells(spheres.size());
+    std::vector<int32_t> found;
+    for (size_t i = 0; i < spheres.size(); ++i) {
+        shells[i] = {packed[i].x, packed[i].r};
+        found.clear();
+        cells.search(shells[i], shells, found);
+        cells.add(int(i), shells[i]);
+        for (const int32_t j : found) {
+            if (spheres[i].fixed && spheres[size_t(j)].fixed) continue;
+            const Vec3 d = packed[i].x - packed[size_t(j)].x;
+            const double r = norm(d - nearest(d * inverse) * period);
+            const double sigma = packed[i].r + packed[size_t(j)].r;
+            if (r < sigma * (1 - 1e-12) && sigma - r > worst.depth)
+                worst = {j, int32_t(i), sigma - r};
+        }
+    }
+    return worst;
+}
+
+}  // namespace carom

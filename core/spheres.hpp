@@ -1,0 +1,71 @@
+// What a sphere is in memory.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "vec3.hpp"
+
+namespace carom {
+
+// Partner codes of events, the same as in the event records that Python sees.
+constexpr int32_t kNone = INT32_MIN;          // no partner, no event
+constexpr int32_t kEscape = INT32_MIN + 1;    // leaves its neighbour shell: bookkeeping only
+constexpr int32_t kWoke = -(1 << 21);         // a resting sphere was pushed off its wall
+constexpr int32_t kCameToRest = -(1 << 20) - 1;  // kCameToRest - k: came to rest on wall k
+constexpr int32_t wall_code(int k) { return -1 - k; }
+
+struct Image {  // whole boxes
+    int32_t x = 0, y = 0, z = 0;
+    bool operator==(const Image&) const = default;
+};
+// Sums wrap around after 2^31 boxes instead of overflowing.
+inline int32_t wrapped(uint32_t a) { return int32_t(a); }
+inline Image operator+(Image a, Image b) {
+    return {wrapped(uint32_t(a.x) + uint32_t(b.x)), wrapped(uint32_t(a.y) + uint32_t(b.y)),
+            wrapped(uint32_t(a.z) + uint32_t(b.z))};
+}
+inline Image operator-(Image a, Image b) {
+    return {wrapped(uint32_t(a.x) - uint32_t(b.x)), wrapped(uint32_t(a.y) - uint32_t(b.y)),
+            wrapped(uint32_t(a.z) - uint32_t(b.z))};
+}
+inline Image to_image(const Vec3& boxes) {  // saturates rather than overflow
+    const auto whole = [](double b) { return int32_t(std::clamp(b, -2147483647.0, 2147483647.0)); };
+    return {whole(boxes.x), whole(boxes.y), whole(boxes.z)};
+}
+inline Vec3 shift(Image m, const Vec3& period) {
+    return {m.x * period.x, m.y * period.y, m.z * period.z};
+}
+
+// One cache line: where the sphere was at its last physical event, and how it left. It changes
+// only at such an event (and at an epoch), so whatever is predicted from two spheres is a pure
+// function of their past collisions, however often and by whomever it is computed.
+struct alignas(64) Sphere {
+    Vec3 x;     // position at time t, wrapped into the box
+    double t;   // time of the anchor, since the epoch
+    Vec3 v;     // velocity at time t
+    double r;   // radius
+};
+static_assert(sizeof(Sphere) == 64);
+
+// The rest of the stored state, touched once per collision.
+struct Body {
+    double inverse_mass = 1;    // 0 for a fixed sphere
+    int32_t last = kNone;       // partner of the last event ...
+    Image last_image;           // ... and its image, counted in unwrapped positions
+    Image image;                // whole boxes travelled
+    int32_t rests_on = -1;      // wall it rests on, or -1
+};
+static_assert(sizeof(Body) == 40);
+
+// The sphere's next event, as predicted.
+struct Event {
+    double t = 0;
+    int32_t partner = kNone;
+    uint32_t partner_count = 0;  // of the partner when predicted: differs later = stale
+    uint32_t count = 0;          // impulses this sphere has received
+    Image m;                     // image of the partner, relative to the anchors
+};
+static_assert(sizeof(Event) == 32);
+
+}  // namespace carom

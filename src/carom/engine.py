@@ -1,0 +1,211 @@
+"""The contract every engine keeps, and the fast one behind it."""
+
+import os
+from dataclasses import replace
+from enum import IntEnum
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom import _core
+from carom.state import EVENT, State
+from carom.world import World
+
+NO_LIMIT = 2**62
+
+# CAROM_CHECK=1 lets the core compare its structures with one another after every slice.
+_CHECK = os.environ.get("CAROM_CHECK") == "1"
+
+
+class Stop(IntEnum):
+    """Why `advance` returned."""
+
+    TIME = 0  #: the asked-for time is reached
+    COUNT = 1  #: the asked-for number of collisions or events is done
+    SLICE = 2  #: the time slice is over or the log is full: call again
+    IDLE = 3  #: nothing will ever happen again, and `until` is infinite
+    COLLAPSE = 4  #: inelastic collapse, see `Engine.collapse`
+
+
+class Engine(Protocol):
+    """Moves spheres from one collision to the next.
+
+    An engine is built from a state and a world. It never rounds a time to a step: after
+    ``advance(until=t)`` that stops with `Stop.TIME` its state is exactly at t.
+    """
+
+    def __init__(self, state: State, world: World) -> None: ...
+
+    @property
+    def time(self) -> float:
+        """Simulated time now."""
+
+    @property
+    def collisions(self) -> int:
+        """Sphere-sphere collisions since the scene began."""
+
+    @property
+    def wall_collisions(self) -> int:
+        """Collisions with walls since the scene began."""
+
+    @property
+    def dissipated(self) -> float:
+        """Energy the rules have taken since this engine was built (negative: given)."""
+
+    @property
+    def withheld(self) -> float:
+        """Energy the contact-time cure has kept from being dissipated."""
+
+    @property
+    def collapse(self) -> tuple[float, int, int] | None:
+        """(time, i, j) of an inelastic collapse, j as in event records; None if there is none."""
+
+    def advance(
+        self, until: float, max_collisions: int = NO_LIMIT, max_events: int = NO_LIMIT
+    ) -> Stop:
+        """Run to `until`, or until that many collisions (or events, walls included) happened.
+
+        Returns early with `Stop.SLICE` after about 50 ms of work; counts are per call.
+        """
+
+    def take_events(self) -> NDArray[Any]:
+        """Records (dtype `EVENT`, **absolute** times) of all events since the last call."""
+
+    def state(self) -> State:
+        """A copy of the state at `time`."""
+
+    def max_overlap(self) -> float:
+        """Largest (sigma - r) / sigma over executed collisions and pairs now near each other.
+
+        0 if nothing was ever closer than touching.
+        """
+
+
+class FastEngine:
+    """The engine in C++: calendar queue, neighbour lists, exact contact times.
+
+    Cost per collision does not grow with the number of spheres. `log=False` keeps no event
+    records. `margin`, `cell` and `slice_seconds` are bookkeeping for tests: the trajectory's bits
+    do not depend on them.
+    """
+
+    def __init__(
+        self,
+        state: State,
+        world: World,
+        *,
+        log: bool = True,
+        margin: float = 0.0,
+        cell: float = 0.0,
+        slice_seconds: float = 0.05,
+    ) -> None:
+        self._start = state.copy()
+        walls = np.column_stack(
+            [
+                world.walls["kind"],
+                world.walls["bounce_back"],
+                world.walls["normal"].reshape(-1, 3),
+                world.walls["offset"],
+                world.walls["restitution"],
+            ]
+        )
+        self._core = _core.Engine(
+            position=np.ascontiguousarray(state.position, np.float64),
+            velocity=np.ascontiguousarray(state.velocity, np.float64),
+            mass=np.ascontiguousarray(state.mass, np.float64),
+            radius=np.ascontiguousarray(state.radius, np.float64),
+            fixed=np.ascontiguousarray(state.fixed, np.bool_),
+            resting=np.ascontiguousarray(state.resting, np.bool_),
+            image=np.ascontiguousarray(state.image, np.int32),
+            count=np.ascontiguousarray(state.collision_count, np.uint32),
+            time=state.time,
+            period=np.ascontiguousarray(world.period, np.float64),
+            walls=np.ascontiguousarray(walls, np.float64),
+            restitution=world.restitution,
+            contact_time=world.contact_time,
+            gravity=np.ascontiguousarray(world.gravity, np.float64),
+            collide=world.collide,
+            margin=margin,
+            cell=cell,
+            log=log,
+            slice=slice_seconds,
+        )
+
+    @property
+    def time(self) -> float:
+        """Simulated time now."""
+        return self._core.time
+
+    @property
+    def collisions(self) -> int:
+        """Sphere-sphere collisions since the scene began."""
+        return self._start.collisions + self._core.collisions
+
+    @property
+    def wall_collisions(self) -> int:
+        """Collisions with walls since the scene began."""
+        return self._start.wall_collisions + self._core.wall_collisions
+
+    @property
+    def dissipated(self) -> float:
+        """Energy the rules have taken since this engine was built (negative: given)."""
+        return self._core.dissipated
+
+    @property
+    def withheld(self) -> float:
+        """Energy the contact-time cure has kept from being dissipated."""
+        return self._core.withheld
+
+    @property
+    def collapse(self) -> tuple[float, int, int] | None:
+        """(time, i, j) of an inelastic collapse, j as in event records; None if there is none."""
+        return self._core.collapse
+
+    @property
+    def bytes(self) -> int:
+        """Memory the engine holds."""
+        return self._core.bytes
+
+    def advance(
+        self, until: float, max_collisions: int = NO_LIMIT, max_events: int = NO_LIMIT
+    ) -> Stop:
+        """Run to `until` or a count; see `Engine.advance`."""
+        stop = Stop(self._core.advance(until, max_collisions, max_events))
+        if _CHECK:
+            self._core.check()
+        return stop
+
+    def take_events(self) -> NDArray[Any]:
+        """Records (dtype `EVENT`, absolute times) of all events since the last call."""
+        start, raw = self._core.take_log()
+        events = raw.view(EVENT)
+        events["time"] += start
+        return events
+
+    def state(self) -> State:
+        """A copy of the state at `time`."""
+        position, velocity, image, count, resting = self._core.state()
+        return replace(
+            self._start.copy(),
+            position=position,
+            velocity=velocity,
+            image=image,
+            collision_count=count,
+            resting=resting.view(np.bool_),
+            time=self.time,
+            collisions=self.collisions,
+            wall_collisions=self.wall_collisions,
+        )
+
+    def max_overlap(self) -> float:
+        """Largest (sigma - r) / sigma met in a collision or between neighbours now."""
+        return self._core.max_overlap()
+
+    def checkpoint(self) -> bytes:
+        """The stored states as they are: `restore` then continues with the same bits."""
+        return self._core.checkpoint()
+
+    def restore(self, checkpoint: bytes) -> None:
+        """Continue from a checkpoint of an engine built from the same state and world."""
+        self._core.restore(checkpoint)
