@@ -190,7 +190,7 @@ void Engine::check() const {
         if (!shells_on_) continue;
         const Motion at = motion(int(i), now_);
         const double margin = shells_[i].reach - spheres_[i].r;
-        demand(e.t <= now_ ||  // just about to be given a new one
+        demand(e.t <= now_ || margin >= kEndless * margin_ ||  // about to be remade, or never
                    cells_.distance2(at.x, shells_[i].centre) <= margin * margin * (1 + 1e-9),
                "a sphere has left its shell unseen");
         std::vector<int32_t> found;

@@ -58,6 +58,8 @@ struct Tuning {           // bookkeeping only: no bit of a trajectory depends on
     double slice = 0.05;  // seconds of work after which `advance` returns
 };
 
+constexpr double kEndless = 0x1p60;  // margins: a shell wider than positions are resolved
+
 class Engine {
 public:
     Engine(const std::vector<StartSphere>& start, double time, const World& world,

@@ -10,6 +10,8 @@ inline Vec3 flown(const Vec3& x, const Vec3& v, const Vec3& a, double t) {
     return x + (v + a * (0.5 * t)) * t;
 }
 
+constexpr size_t kLonely = 10, kCrowded = 30;  // neighbours
+
 // The whole boxes m for which |r - m L| can be at most `reach`, along one axis.
 struct Span {
     int32_t lo, hi;
@@ -134,6 +136,7 @@ double Engine::escape_time(int i) const {
     Vec3 d = at.x - shells_[size_t(i)].centre;
     d -= nearest(d * inverse_period_) * world_.period;
     const double margin = shells_[size_t(i)].reach - s.r;
+    if (margin >= kEndless * margin_) return kNever;
     const double v2 = norm2(at.v), room = margin * margin - norm2(d);
     if (falls_[size_t(i)] && gravity_) {
         const double left = margin - norm(d);
@@ -185,10 +188,6 @@ void Engine::escape(int i) {
     }
     make_shell(i);
     predict(i);
-}
-
-namespace {
-constexpr size_t kLonely = 10, kCrowded = 30;  // neighbours
 }
 
 bool Engine::crowded(int i) const {

@@ -52,7 +52,7 @@ void Engine::choose_shells(const Tuning& tuning) {
     const double shell = std::cbrt(kNeighbours * free / (kSpherical * double(size())));
     margin_ = std::clamp(0.5 * shell - r, 0.1 * r, 16 * r);
     if (tuning.margin > 0) margin_ = tuning.margin;
-    most_margin_ = margin_ * std::ldexp(1.0, 60);
+    most_margin_ = kNever;
     if (periodic_) {
         // One image of a neighbour is enough while no other can come within reach.
         const double single = 0.249 * (half_period_ - 2 * r);
