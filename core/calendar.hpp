@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "contact.hpp"
+#include "growth.hpp"
 #include "spheres.hpp"
 
 namespace carom {
@@ -119,7 +120,7 @@ private:
             spare_ = lines_[size_t(spare)].next;
         } else {
             spare = int32_t(lines_.size());
-            lines_.push_back({});
+            grow(lines_);
         }
         Line& first = lines_[size_t(slot)];
         lines_[size_t(spare)] = first;

@@ -5,12 +5,16 @@
 // Each level is a torus of cells: along an open axis, cell c is kept in slot c mod n. Far places may
 // share a slot; the distance test tells them apart. So the cells need no borders, and follow the
 // spheres wherever they fly.
+//
+// A cell is one cache line: seven shells with their place in the cell to 1/256 of its width. Most
+// candidates are turned away by integer arithmetic on that line alone.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 #include <vector>
 
+#include "growth.hpp"
 #include "vec3.hpp"
 
 namespace carom {
@@ -27,6 +31,7 @@ public:
     void reset(double width, const Vec3& period, size_t count) {
         width_ = width;
         period_ = period;
+        inverse_period_ = inverse(period);
         count_ = count;
         levels_.clear();
         lines_.clear();
@@ -36,7 +41,7 @@ public:
     void add(int i, const Shell& s) {
         Level& level = levels_[size_t(level_of(s.reach))];
         ++level.population;
-        push(slot_of(level, s.centre), i);
+        push(level, i, s);
     }
 
     void remove(int i, const Shell& s) {
@@ -54,18 +59,22 @@ public:
 
     double distance2(const Vec3& a, const Vec3& b) const {
         Vec3 d = a - b;
-        d -= nearest(d * inverse(period_)) * period_;
+        d -= nearest(d * inverse_period_) * period_;
         return norm2(d);
     }
 
     size_t bytes() const { return lines_.capacity() * sizeof(Line); }
 
 private:
-    struct alignas(32) Line {  // half a cache line: six ids, then a chain
+    static constexpr int kSlots = 7;
+    struct alignas(64) Line {
         int32_t n = 0;
-        int32_t next = -1;
-        int32_t id[6];
+        int32_t next = -1;  // the line behind, when seven are not enough
+        int32_t id[kSlots];
+        uint8_t x[kSlots], y[kSlots], z[kSlots];  // in 1/256 of the cell, rounded down
+        uint8_t reach[kSlots];                    // in the same unit, rounded up
     };
+    static_assert(sizeof(Line) == 64);
     struct Level {
         Vec3 inverse_width;
         int64_t n[3];      // cells per axis
@@ -108,13 +117,24 @@ private:
 
     // Cell coordinate along an axis. Clamped so that no distance overflows an integer; clamping
     // keeps near cells near.
-    static int64_t coordinate(double x, double inverse_width) {
-        return int64_t(std::clamp(std::floor(x * inverse_width), -1e15, 1e15));
+    static double coordinate(double x, double inverse_width) {
+        return std::clamp(std::floor(x * inverse_width), -1e15, 1e15);
     }
-    static int64_t wrap(int64_t c, int64_t n) {
+    static int64_t wrap(double coordinate, int64_t n) {
+        const auto c = int64_t(coordinate);
         if (c >= 0 && c < n) return c;
         const int64_t r = c % n;
         return r < 0 ? r + n : r;
+    }
+    // 0 ... 255 within the cell.
+    static int fine(double x, double inverse_width) {
+        const double u = x * inverse_width;
+        return int(std::clamp(std::floor((u - std::floor(u)) * 256), 0.0, 255.0));
+    }
+    static int fine_reach(double reach, const Level& l) {
+        const double finest =
+            std::max(l.inverse_width.x, std::max(l.inverse_width.y, l.inverse_width.z));
+        return int(std::min(std::ceil(reach * finest * 256), 1e6));
     }
     int64_t slot_of(const Level& l, const Vec3& x) const {
         const int64_t a = wrap(coordinate(x.x, l.inverse_width.x), l.n[0]);
@@ -123,67 +143,108 @@ private:
         return l.first + (c * l.n[1] + b) * l.n[0] + a;
     }
 
-    struct Range {  // slots along one axis: `count` of them from `begin`, wrapping at n
-        int64_t begin, count;
+    // The slots that a search visits along one axis.
+    struct Axis {
+        int64_t slot, count, n;  // first slot, how many, wrapping at n
+        int near;                // fine coordinate of the searcher, seen from the first cell
+        bool exact;              // no cell is met twice and none is far: fine coordinates tell
     };
-    static Range range(double x, double radius, double inverse_width, int64_t n) {
-        const int64_t lo = coordinate(x - radius, inverse_width);
-        const int64_t hi = coordinate(x + radius, inverse_width);
-        const int64_t count = hi - lo + 1;
-        if (count >= n) return {0, n};
-        return {wrap(lo, n), count};
+    static Axis axis(double x, double radius, double inverse_width, int64_t n) {
+        const double lo = coordinate(x - radius, inverse_width),
+                     hi = coordinate(x + radius, inverse_width);
+        const double count = hi - lo + 1;
+        if (!(count < double(n))) return {0, n, n, 0, false};
+        const double cells = coordinate(x, inverse_width) - lo;
+        const bool exact = count < 64;
+        return {wrap(lo, n), int64_t(count), n,
+                exact ? int(cells) * 256 + fine(x, inverse_width) : 0, exact};
     }
 
     void search(const Level& l, const Shell& s, const std::vector<Shell>& shells,
                 std::vector<int32_t>& out) const {
         // Shells on this level reach at most half a cell.
-        const double rx = s.reach + 0.5 / l.inverse_width.x, ry = s.reach + 0.5 / l.inverse_width.y,
-                     rz = s.reach + 0.5 / l.inverse_width.z;
-        const Range ax = range(s.centre.x, rx, l.inverse_width.x, l.n[0]);
-        const Range ay = range(s.centre.y, ry, l.inverse_width.y, l.n[1]);
-        const Range az = range(s.centre.z, rz, l.inverse_width.z, l.n[2]);
-        const Vec3 inv = inverse(period_);
-        int64_t z = az.begin;
-        for (int64_t kz = 0; kz < az.count; ++kz, z = z + 1 == l.n[2] ? 0 : z + 1) {
-            int64_t y = ay.begin;
-            for (int64_t ky = 0; ky < ay.count; ++ky, y = y + 1 == l.n[1] ? 0 : y + 1) {
-                const int64_t row = l.first + (z * l.n[1] + y) * l.n[0];
-                int64_t x = ax.begin;
-                for (int64_t kx = 0; kx < ax.count; ++kx, x = x + 1 == l.n[0] ? 0 : x + 1) {
-                    for (int64_t c = row + x; c >= 0; c = lines_[size_t(c)].next) {
-                        const Line& line = lines_[size_t(c)];
-                        for (int k = 0; k < line.n; ++k) {
-                            const Shell& o = shells[size_t(line.id[k])];
-                            Vec3 d = s.centre - o.centre;
-                            d -= nearest(d * inv) * period_;
-                            const double near = s.reach + o.reach;
-                            if (norm2(d) < near * near) out.push_back(line.id[k]);
-                        }
-                    }
+        const Vec3& iw = l.inverse_width;
+        const Axis ax = axis(s.centre.x, s.reach + 0.5 / iw.x, iw.x, l.n[0]);
+        const Axis ay = axis(s.centre.y, s.reach + 0.5 / iw.y, iw.y, l.n[1]);
+        const Axis az = axis(s.centre.z, s.reach + 0.5 / iw.z, iw.z, l.n[2]);
+        const bool exact = ax.exact && ay.exact && az.exact &&
+                           iw.x == iw.y && iw.y == iw.z;
+        const int reach = fine_reach(s.reach, l) + 2;  // 2 > sqrt(3): both places are rounded
+        int64_t z = az.slot;
+        for (int64_t kz = 0; kz < az.count; ++kz, z = z + 1 == az.n ? 0 : z + 1) {
+            int64_t y = ay.slot;
+            const int dz = az.near - 256 * int(kz);
+            for (int64_t ky = 0; ky < ay.count; ++ky, y = y + 1 == ay.n ? 0 : y + 1) {
+                const int dy = ay.near - 256 * int(ky);
+                const int64_t row = l.first + (z * ay.n + y) * ax.n;
+                int64_t x = ax.slot;
+                for (int64_t kx = 0; kx < ax.count; ++kx, x = x + 1 == ax.n ? 0 : x + 1) {
+                    const Line* line = &lines_[size_t(row + x)];
+                    if (exact)
+                        filter(*line, ax.near - 256 * int(kx), dy, dz, reach, s, shells, out);
+                    else
+                        all(*line, s, shells, out);
                 }
             }
         }
     }
 
-    void push(int64_t slot, int i) {
+    void filter(const Line& head, int dx, int dy, int dz, int reach, const Shell& s,
+                const std::vector<Shell>& shells, std::vector<int32_t>& out) const {
+        for (const Line* line = &head;; line = &lines_[size_t(line->next)]) {
+            for (int k = 0; k < line->n; ++k) {
+                const int x = dx - line->x[k], y = dy - line->y[k], z = dz - line->z[k],
+                          r = reach + line->reach[k];
+                if (x * x + y * y + z * z < r * r) accept(line->id[k], s, shells, out);
+            }
+            if (line->next < 0) return;
+        }
+    }
+
+    void all(const Line& head, const Shell& s, const std::vector<Shell>& shells,
+             std::vector<int32_t>& out) const {
+        for (const Line* line = &head;; line = &lines_[size_t(line->next)]) {
+            for (int k = 0; k < line->n; ++k) accept(line->id[k], s, shells, out);
+            if (line->next < 0) return;
+        }
+    }
+
+    void accept(int32_t j, const Shell& s, const std::vector<Shell>& shells,
+                std::vector<int32_t>& out) const {
+        const Shell& o = shells[size_t(j)];
+        const double near = s.reach + o.reach;
+        if (distance2(s.centre, o.centre) < near * near) out.push_back(j);
+    }
+
+    static void move(const Line& from, int k, Line& to, int at) {
+        to.id[at] = from.id[k];
+        to.x[at] = from.x[k];
+        to.y[at] = from.y[k];
+        to.z[at] = from.z[k];
+        to.reach[at] = from.reach[k];
+    }
+
+    void push(const Level& l, int i, const Shell& s) {
+        const int64_t slot = slot_of(l, s.centre);
+        if (lines_[size_t(slot)].n == kSlots) {  // full: its content moves to a line behind it
+            int32_t spare = free_;
+            if (spare >= 0) {
+                free_ = lines_[size_t(spare)].next;
+            } else {
+                spare = int32_t(lines_.size());
+                grow(lines_);
+            }
+            lines_[size_t(spare)] = lines_[size_t(slot)];
+            lines_[size_t(slot)].next = spare;
+            lines_[size_t(slot)].n = 0;
+        }
         Line& head = lines_[size_t(slot)];
-        if (head.n < 6) {
-            head.id[head.n++] = i;
-            return;
-        }
-        // Full: its content moves to a spare line behind it.
-        int32_t spare = free_;
-        if (spare >= 0) {
-            free_ = lines_[size_t(spare)].next;
-        } else {
-            spare = int32_t(lines_.size());
-            lines_.push_back({});
-        }
-        Line& first = lines_[size_t(slot)];
-        lines_[size_t(spare)] = first;
-        first.next = spare;
-        first.n = 1;
-        first.id[0] = i;
+        const int k = head.n++;
+        head.id[k] = i;
+        head.x[k] = uint8_t(fine(s.centre.x, l.inverse_width.x));
+        head.y[k] = uint8_t(fine(s.centre.y, l.inverse_width.y));
+        head.z[k] = uint8_t(fine(s.centre.z, l.inverse_width.z));
+        head.reach[k] = uint8_t(std::min(fine_reach(s.reach, l), 255));
     }
 
     void take(int64_t slot, int i) {
@@ -192,7 +253,7 @@ private:
             Line& line = lines_[size_t(c)];
             for (int k = 0; k < line.n; ++k) {
                 if (line.id[k] != i) continue;
-                line.id[k] = head.id[--head.n];
+                move(head, --head.n, line, k);
                 if (head.n == 0 && head.next >= 0) {  // the line behind becomes the head
                     const int32_t behind = head.next;
                     head = lines_[size_t(behind)];
@@ -205,7 +266,7 @@ private:
     }
 
     double width_ = 1;
-    Vec3 period_;
+    Vec3 period_, inverse_period_;
     size_t count_ = 0;
     std::vector<Level> levels_;
     std::vector<Line> lines_;

@@ -40,9 +40,9 @@ public:
     void remove(int i, int32_t j) {  // j must be there
         Row& r = rows_[i];
         int32_t* id = r.large < 0 ? r.id : large_[r.large].data();
-        int k = 0;
-        while (id[k] != j) ++k;
-        id[k] = id[--r.n];
+        int at = 0;  // no early exit: the plain loop compiles to vector compares
+        for (int k = 0; k < r.n; ++k) at = id[k] == j ? k : at;
+        id[at] = id[--r.n];
         if (r.large >= 0) large_[r.large].pop_back();
         if (r.large >= 0 && r.n <= kInline / 2) unspill(r);
     }

@@ -207,8 +207,13 @@ void Engine::make_shell(int i) {
         wish = std::min(2 * margin, most_margin_);
 
     cells_.remove(i, shell);
-    shell.centre = motion(i, now_).x;
+    const Motion at = motion(i, now_);
+    const double speed = norm(at.v);
     for (;;) {
+        // Ahead of the sphere, where it will be (a fourth fewer shells at packing fraction 0.25;
+        // in a dense fluid, where it soon turns round, none).
+        const double ahead = speed > 0 && margin_ > 0.5 * r ? 0.6 * wish / speed : 0;
+        shell.centre = at.x + at.v * ahead;
         shell.reach = r + wish;
         found_.clear();
         cells_.search(shell, shells_, found_);
