@@ -78,8 +78,8 @@ auto make_engine(const Vectors& position, const Vectors& velocity, const Numbers
         start[i].image = {image(i, 0), image(i, 1), image(i, 2)};
         start[i].count = count(i);
     }
-    const carom::World world{three(period), walls_from(walls), restitution, contact_time,
-                             three(gravity), collide};
+    const carom::World world{three(period), walls_from(walls), restitution,
+                             contact_time,  three(gravity),    collide};
     const nb::gil_scoped_release release;
     return std::make_unique<Engine>(start, time, world, carom::Tuning{margin, cell, log, slice});
 }
@@ -137,8 +137,13 @@ NB_MODULE(_core, m) {
             },
             nb::arg("until"), nb::arg("max_collisions"), nb::arg("max_events"),
             nb::call_guard<nb::gil_scoped_release>(), "Runs until a time or a count; see Stop.")
-        .def("state", &state_of, "(position, velocity, image, count, resting) at `time`.")
-        .def("take_log", &take_log, "(start time, records as bytes) since the last call.")
+        .def("state", &state_of,
+             nb::sig("def state(self) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64], "
+                     "NDArray[numpy.int32], NDArray[numpy.uint32], NDArray[numpy.uint8]]"),
+             "(position, velocity, image, count, resting) at `time`.")
+        .def("take_log", &take_log,
+             nb::sig("def take_log(self) -> tuple[float, NDArray[numpy.uint8]]"),
+             "(start time, records as bytes) since the last call.")
         .def("max_overlap", &Engine::max_overlap, "Deepest overlap met, in contact distances.")
         .def("check", &Engine::check, "Raises if two structures contradict one another.")
         .def(
@@ -157,7 +162,7 @@ NB_MODULE(_core, m) {
         .def_prop_ro("wall_collisions", &Engine::wall_collisions, "With walls.")
         .def_prop_ro("dissipated", &Engine::dissipated, "Energy the rules have taken.")
         .def_prop_ro("withheld", &Engine::withheld, "Energy the contact-time cure kept.")
-        .def_prop_ro("bytes", &Engine::bytes, "Memory in use.")
+        .def_prop_ro("memory", &Engine::bytes, "Bytes in use.")
         .def_prop_ro(
             "collapse",
             [](const Engine& e) -> std::optional<std::tuple<double, int, int>> {
@@ -171,8 +176,8 @@ NB_MODULE(_core, m) {
         "first_overlap",
         [](const Vectors& position, const Numbers& radius, const Flags& fixed,
            const Three& period) -> std::optional<std::tuple<int, int, double>> {
-            const carom::Overlap o = carom::first_overlap(spheres(position, radius, fixed),
-                                                          three(period));
+            const carom::Overlap o =
+                carom::first_overlap(spheres(position, radius, fixed), three(period));
             if (o.i == carom::kNone) return std::nullopt;
             return std::make_tuple(o.i, o.j, o.depth);
         },

@@ -2,9 +2,9 @@
 //
 // A shell of reach s (radius + margin) lives on the lowest level whose cells are at least 2 s wide,
 // so that whatever it can touch on its own or a higher level lies within the 27 cells around it.
-// Each level is a torus of cells: along an open axis, cell c is kept in slot c mod n. Far places may
-// share a slot; the distance test tells them apart. So the cells need no borders, and follow the
-// spheres wherever they fly.
+// Each level is a torus of cells: along an open axis, cell c is kept in slot c mod n. Far places
+// may share a slot; the distance test tells them apart. So the cells need no borders, and follow
+// the spheres wherever they fly.
 //
 // A cell is one cache line: seven shells with their place in the cell to 1/256 of its width. Most
 // candidates are turned away by integer arithmetic on that line alone.
@@ -77,8 +77,8 @@ private:
     static_assert(sizeof(Line) == 64);
     struct Level {
         Vec3 inverse_width;
-        int64_t n[3];      // cells per axis
-        int64_t first;     // index of its first line
+        int64_t n[3];   // cells per axis
+        int64_t first;  // index of its first line
         int64_t population = 0;
     };
 
@@ -167,8 +167,7 @@ private:
         const Axis ax = axis(s.centre.x, s.reach + 0.5 / iw.x, iw.x, l.n[0]);
         const Axis ay = axis(s.centre.y, s.reach + 0.5 / iw.y, iw.y, l.n[1]);
         const Axis az = axis(s.centre.z, s.reach + 0.5 / iw.z, iw.z, l.n[2]);
-        const bool exact = ax.exact && ay.exact && az.exact &&
-                           iw.x == iw.y && iw.y == iw.z;
+        const bool exact = ax.exact && ay.exact && az.exact && iw.x == iw.y && iw.y == iw.z;
         const int reach = fine_reach(s.reach, l) + 2;  // 2 > sqrt(3): both places are rounded
         int64_t z = az.slot;
         for (int64_t kz = 0; kz < az.count; ++kz, z = z + 1 == az.n ? 0 : z + 1) {

@@ -51,9 +51,9 @@ struct Collapse {
     int32_t i = kNone, j = kNone;
 };
 
-struct Tuning {           // bookkeeping only: no bit of a trajectory depends on it
-    double margin = 0;    // of the neighbour shells; 0 = chosen from the density
-    double cell = 0;      // width of the smallest cells; 0 = chosen from the shells
+struct Tuning {         // bookkeeping only: no bit of a trajectory depends on it
+    double margin = 0;  // of the neighbour shells; 0 = chosen from the density
+    double cell = 0;    // width of the smallest cells; 0 = chosen from the shells
     bool log = true;
     double slice = 0.05;  // seconds of work after which `advance` returns
 };
@@ -102,6 +102,7 @@ private:
 
     // engine.cpp
     Motion motion(int i, double t) const;
+    void look_ahead() const;
     Vec3 acceleration(int i) const { return falls_[size_t(i)] ? world_.gravity : Vec3{}; }
     Vec3 whole_boxes(const Vec3& x) const { return nearest(x * inverse_period_); }
 
@@ -134,7 +135,8 @@ private:
     World world_;
     Vec3 inverse_period_;
     bool gravity_ = false, periodic_ = false, inelastic_ = false;
-    bool shells_on_ = true;    // neighbours matter at all
+    bool shells_on_ = true;        // neighbours matter at all
+    bool far_ = false;             // more spheres than the caches hold
     double half_period_ = kNever;  // of the shortest periodic axis
 
     Clock clock_;
@@ -167,8 +169,8 @@ private:
     Collapse collapse_;
     bool logging_ = true;
     double slice_ = 0.05;
-    double log_start_ = 0;   // absolute
-    double log_shift_ = 0;   // offset of log_start_ in this epoch
+    double log_start_ = 0;  // absolute
+    double log_shift_ = 0;  // offset of log_start_ in this epoch
     std::vector<Record> log_;
 };
 

@@ -89,8 +89,10 @@ void Engine::hit_wall(int32_t i, int k, double t) {
     Vec3 v = at.v;
     if (lasting) {
         const double out = rests ? 0 : least;
-        if (w.bounce_back) v = (v - d * (speed / length)) * -e + d * (out / length);
-        else v += d * ((out - speed) / length);
+        if (w.bounce_back)
+            v = (v - d * (speed / length)) * -e + d * (out / length);
+        else
+            v += d * ((out - speed) / length);
     } else if (w.bounce_back) {
         v = v * -e;
     } else {
@@ -151,8 +153,7 @@ bool Engine::recent(int32_t i, double t) const {
 void Engine::watch(int32_t i, int32_t j, double t, double speed) {
     for (const int32_t k : {i, j}) {
         if (k < 0 || bodies_[size_t(k)].inverse_mass == 0) continue;
-        if (watches_[size_t(k)].collapsed(t, speed, spheres_[size_t(k)].r) &&
-            collapse_.i == kNone)
+        if (watches_[size_t(k)].collapsed(t, speed, spheres_[size_t(k)].r) && collapse_.i == kNone)
             collapse_ = {clock_.time(t), i, j};
     }
 }

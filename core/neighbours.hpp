@@ -19,6 +19,7 @@ public:
         const Row& r = rows_[i];
         return {r.large < 0 ? r.id : large_[r.large].data(), size_t(r.n)};
     }
+    const void* line(int i) const { return &rows_[i]; }
     size_t size(int i) const { return size_t(rows_[i].n); }
 
     size_t bytes() const {

@@ -31,7 +31,7 @@ struct Watch {
     double start = 0, fastest = 0;
     int count = 0;
 
-    static constexpr int kLimit = 20;  // collisions ...
+    static constexpr int kLimit = 20;        // collisions ...
     static constexpr double kStill = 1e-12;  // ... within this many radii of motion
 
     bool collapsed(double t, double speed, double radius) {

@@ -9,9 +9,9 @@
 namespace carom {
 
 // Partner codes of events, the same as in the event records that Python sees.
-constexpr int32_t kNone = INT32_MIN;          // no partner, no event
-constexpr int32_t kEscape = INT32_MIN + 1;    // leaves its neighbour shell: bookkeeping only
-constexpr int32_t kWoke = -(1 << 21);         // a resting sphere was pushed off its wall
+constexpr int32_t kNone = INT32_MIN;             // no partner, no event
+constexpr int32_t kEscape = INT32_MIN + 1;       // leaves its neighbour shell: bookkeeping only
+constexpr int32_t kWoke = -(1 << 21);            // a resting sphere was pushed off its wall
 constexpr int32_t kCameToRest = -(1 << 20) - 1;  // kCameToRest - k: came to rest on wall k
 constexpr int32_t wall_code(int k) { return -1 - k; }
 
@@ -41,20 +41,20 @@ inline Vec3 shift(Image m, const Vec3& period) {
 // only at such an event (and at an epoch), so whatever is predicted from two spheres is a pure
 // function of their past collisions, however often and by whomever it is computed.
 struct alignas(64) Sphere {
-    Vec3 x;     // position at time t, wrapped into the box
-    double t;   // time of the anchor, since the epoch
-    Vec3 v;     // velocity at time t
-    double r;   // radius
+    Vec3 x;    // position at time t, wrapped into the box
+    double t;  // time of the anchor, since the epoch
+    Vec3 v;    // velocity at time t
+    double r;  // radius
 };
 static_assert(sizeof(Sphere) == 64);
 
 // The rest of the stored state, touched once per collision.
 struct Body {
-    double inverse_mass = 1;    // 0 for a fixed sphere
-    int32_t last = kNone;       // partner of the last event ...
-    Image last_image;           // ... and its image, counted in unwrapped positions
-    Image image;                // whole boxes travelled
-    int32_t rests_on = -1;      // wall it rests on, or -1
+    double inverse_mass = 1;  // 0 for a fixed sphere
+    int32_t last = kNone;     // partner of the last event ...
+    Image last_image;         // ... and its image, counted in unwrapped positions
+    Image image;              // whole boxes travelled
+    int32_t rests_on = -1;    // wall it rests on, or -1
 };
 static_assert(sizeof(Body) == 40);
 

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from carom import _core
+from carom._core import Engine as _Core
 from carom.state import EVENT, State
 from carom.world import World
 
@@ -110,7 +110,7 @@ class FastEngine:
                 world.walls["restitution"],
             ]
         )
-        self._core = _core.Engine(
+        self._core = _Core(
             position=np.ascontiguousarray(state.position, np.float64),
             velocity=np.ascontiguousarray(state.velocity, np.float64),
             mass=np.ascontiguousarray(state.mass, np.float64),
@@ -163,9 +163,9 @@ class FastEngine:
         return self._core.collapse
 
     @property
-    def bytes(self) -> int:
-        """Memory the engine holds."""
-        return self._core.bytes
+    def memory(self) -> int:
+        """Memory the engine holds, in bytes."""
+        return self._core.memory
 
     def advance(
         self, until: float, max_collisions: int = NO_LIMIT, max_events: int = NO_LIMIT
@@ -179,7 +179,7 @@ class FastEngine:
     def take_events(self) -> NDArray[Any]:
         """Records (dtype `EVENT`, absolute times) of all events since the last call."""
         start, raw = self._core.take_log()
-        events = raw.view(EVENT)
+        events: NDArray[Any] = raw.view(EVENT)
         events["time"] += start
         return events
 

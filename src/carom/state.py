@@ -1,6 +1,7 @@
 """The two kinds of data that cross a border: `State` (arrays) and event records."""
 
-from dataclasses import dataclass, fields, replace
+import copy
+from dataclasses import dataclass
 from typing import Any, Self
 
 import numpy as np
@@ -11,9 +12,7 @@ Floats = NDArray[np.float64]
 #: One collision, 40 bytes. `time` is an offset from the start of its batch. Pairs have
 #: i < j and `impulse` acts on i, −impulse on j. `j = -1 - k` is wall k,
 #: `j = CAME_TO_REST - k` came to rest on wall k, `j = WOKE` left its rest (no impulse).
-EVENT: np.dtype[Any] = np.dtype(
-    [("time", "f8"), ("i", "i4"), ("j", "i4"), ("impulse", "f8", (3,))]
-)
+EVENT: np.dtype[Any] = np.dtype([("time", "f8"), ("i", "i4"), ("j", "i4"), ("impulse", "f8", (3,))])
 CAME_TO_REST = -(2**20) - 1
 WOKE = -(2**21)
 
@@ -75,7 +74,4 @@ class State:
 
     def copy(self) -> Self:
         """A state that shares no array with this one."""
-        arrays = {f.name: getattr(self, f.name) for f in fields(self)}
-        return replace(
-            self, **{k: v.copy() for k, v in arrays.items() if isinstance(v, np.ndarray)}
-        )
+        return copy.deepcopy(self)

@@ -1,0 +1,126 @@
+"""The event loop in C++: moves spheres from one collision to the next."""
+
+from typing import Annotated
+
+import numpy
+from numpy.typing import NDArray
+
+class Engine:
+    """Moves spheres from one collision to the next."""
+
+    def __init__(
+        self,
+        position: Annotated[
+            NDArray[numpy.float64], dict(shape=(None, 3), order="C", device="cpu", writable=False)
+        ],
+        velocity: Annotated[
+            NDArray[numpy.float64], dict(shape=(None, 3), order="C", device="cpu", writable=False)
+        ],
+        mass: Annotated[
+            NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)
+        ],
+        radius: Annotated[
+            NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)
+        ],
+        fixed: Annotated[
+            NDArray[numpy.bool_], dict(shape=(None,), order="C", device="cpu", writable=False)
+        ],
+        resting: Annotated[
+            NDArray[numpy.bool_], dict(shape=(None,), order="C", device="cpu", writable=False)
+        ],
+        image: Annotated[
+            NDArray[numpy.int32], dict(shape=(None, 3), order="C", device="cpu", writable=False)
+        ],
+        count: Annotated[
+            NDArray[numpy.uint32], dict(shape=(None,), order="C", device="cpu", writable=False)
+        ],
+        time: float,
+        period: Annotated[
+            NDArray[numpy.float64], dict(shape=(3), order="C", device="cpu", writable=False)
+        ],
+        walls: Annotated[
+            NDArray[numpy.float64], dict(shape=(None, 7), order="C", device="cpu", writable=False)
+        ],
+        restitution: float,
+        contact_time: float,
+        gravity: Annotated[
+            NDArray[numpy.float64], dict(shape=(3), order="C", device="cpu", writable=False)
+        ],
+        collide: bool,
+        margin: float = 0.0,
+        cell: float = 0.0,
+        log: bool = True,
+        slice: float = 0.05,
+    ) -> None: ...
+    def advance(self, until: float, max_collisions: int, max_events: int) -> int:
+        """Runs until a time or a count; see Stop."""
+
+    def state(
+        self,
+    ) -> tuple[
+        NDArray[numpy.float64],
+        NDArray[numpy.float64],
+        NDArray[numpy.int32],
+        NDArray[numpy.uint32],
+        NDArray[numpy.uint8],
+    ]:
+        """(position, velocity, image, count, resting) at `time`."""
+
+    def take_log(self) -> tuple[float, NDArray[numpy.uint8]]:
+        """(start time, records as bytes) since the last call."""
+
+    def max_overlap(self) -> float:
+        """Deepest overlap met, in contact distances."""
+
+    def check(self) -> None:
+        """Raises if two structures contradict one another."""
+
+    def checkpoint(self) -> bytes:
+        """The stored states, for the same bits after a restart."""
+
+    def restore(self, checkpoint: bytes) -> None:
+        """Continues from a checkpoint of the same scene."""
+
+    @property
+    def time(self) -> float:
+        """Simulated time now."""
+
+    @property
+    def collisions(self) -> int:
+        """Between spheres."""
+
+    @property
+    def wall_collisions(self) -> int:
+        """With walls."""
+
+    @property
+    def dissipated(self) -> float:
+        """Energy the rules have taken."""
+
+    @property
+    def withheld(self) -> float:
+        """Energy the contact-time cure kept."""
+
+    @property
+    def memory(self) -> int:
+        """Bytes in use."""
+
+    @property
+    def collapse(self) -> tuple[float, int, int] | None:
+        """(time, i, j) of an inelastic collapse, or None."""
+
+def first_overlap(
+    position: Annotated[
+        NDArray[numpy.float64], dict(shape=(None, 3), order="C", device="cpu", writable=False)
+    ],
+    radius: Annotated[
+        NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)
+    ],
+    fixed: Annotated[
+        NDArray[numpy.bool_], dict(shape=(None,), order="C", device="cpu", writable=False)
+    ],
+    period: Annotated[
+        NDArray[numpy.float64], dict(shape=(3), order="C", device="cpu", writable=False)
+    ],
+) -> tuple[int, int, float] | None:
+    """The deepest overlapping pair (i, j, depth), or None."""

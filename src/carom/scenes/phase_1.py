@@ -1,0 +1,35 @@
+"""Phase 1 of the paper."""
+
+import numpy as np
+
+from carom.random_numbers import Random
+from carom.scene import Scene
+from carom.scenes.paper import BALLS, PACE, WIDTH, balls, count
+from carom.scenes.registry import scene
+from carom.walls import Box
+
+
+@scene
+def phase_1(n: int = BALLS, width: float = WIDTH, seed: int = 1) -> Scene:
+    """The paper's phase 1: balls in a cube that pass through each other.
+
+    They start at the centre, one on another.
+
+    Parameters
+    ----------
+    n : int
+        Number of balls.
+    width : float
+        Side of the cube, pixels.
+    seed : int
+        Of the random velocities and colours.
+    """
+    return Scene(
+        balls(Random(seed), np.zeros((count(n), 3))),
+        walls=(Box(width, width, width),),
+        collide=False,
+        seed=seed,
+        pace=PACE,
+        title="Phase 1: balls in a cube",
+        wire=True,
+    )
