@@ -57,7 +57,7 @@ Engine::Engine(const std::vector<StartSphere>& start, double time, const World& 
     for (size_t i = 0; i < n; ++i) {
         const StartSphere& s = start[i];
         spheres_[i] = {s.position, 0, s.velocity, s.radius};
-        bodies_[i].inverse_mass = s.fixed ? 0 : 1 / s.mass;
+        bodies_[i].mass = s.fixed ? kNever : s.mass;
         bodies_[i].image = s.image;
         events_[i].count = s.count;
         falls_[i] = gravity_ && !s.fixed;
@@ -173,8 +173,8 @@ StartSphere Engine::sphere(int i) const {
     s.image = body.image + to_image(boxes);
     s.velocity = at.v;
     s.radius = spheres_[size_t(i)].r;
-    s.fixed = body.inverse_mass == 0;
-    s.mass = 1 / body.inverse_mass;
+    s.fixed = body.fixed();
+    s.mass = body.mass;
     s.resting = body.rests_on >= 0;
     s.count = events_[size_t(i)].count;
     return s;
@@ -186,7 +186,7 @@ double Engine::max_overlap() const {
         const Motion at = motion(int(i), user_);
         for (const int32_t j : rows_.of(int(i))) {
             if (j < int32_t(i)) continue;
-            if (bodies_[i].inverse_mass + bodies_[size_t(j)].inverse_mass == 0) continue;
+            if (bodies_[i].fixed() && bodies_[size_t(j)].fixed()) continue;
             const double sigma = spheres_[i].r + spheres_[size_t(j)].r;
             const Vec3 d = at.x - motion(j, user_).x;
             const double r = norm(d - whole_boxes(d) * world_.period);

@@ -1,4 +1,4 @@
-// What an event does. The rule gives an impulse; here alone it is applied, to both partners.
+// What an event does. Rules only say how the relative velocity changes; here alone it is applied.
 #include "engine.hpp"
 
 namespace carom {
@@ -32,12 +32,14 @@ void Engine::collide(int32_t i, int32_t j, Image m, double t) {
     Body &a = bodies_[size_t(i)], &b = bodies_[size_t(j)];
     const double ri = spheres_[size_t(i)].r, rj = spheres_[size_t(j)].r;
     const double distance = norm(r), speed = std::min(0.0, dot(r, v) / distance);
-    const double mu = 1 / (a.inverse_mass + b.inverse_mass);
+    const Pair share_a = b.fixed() ? Pair{1, 0} : a.fixed() ? Pair{} : share(a.mass, b.mass);
+    const Pair share_b = a.fixed() ? Pair{1, 0} : b.fixed() ? Pair{} : share(b.mass, a.mass);
+    const double mu = a.fixed() ? b.mass : a.mass * share_a.hi;
     deepest_ = std::max(deepest_, (ri + rj - distance) / (ri + rj));
 
     const double nominal = world_.restitution;
     const double e = recent(i, t) || recent(j, t) ? 1 : nominal;
-    Vec3 impulse;
+    Vec3 change;       // of the relative velocity
     double least = 0;  // rebound speed below which one would rest on the other
     if (falls_[size_t(i)] != falls_[size_t(j)]) {
         const double press = -dot(acceleration(i) - acceleration(j), r) / distance;
@@ -45,10 +47,10 @@ void Engine::collide(int32_t i, int32_t j, Image m, double t) {
     }
     const bool hop = e * -speed < least;
     if (hop) {
-        impulse = r * (mu * (least - speed) / distance);
+        change = r * ((least - speed) / distance);
         dissipated_ += 0.5 * mu * (speed * speed - least * least);
     } else {
-        impulse = smooth_impulse(r, v, mu, e);
+        change = smooth(r, v, e);
         if (e < 1)
             dissipated_ += 0.5 * mu * (1 - e * e) * speed * speed;
         else if (nominal < 1)
@@ -58,9 +60,10 @@ void Engine::collide(int32_t i, int32_t j, Image m, double t) {
     const Image unwrapped = m + a.image - b.image;
     a.last = j, b.last = i;
     a.last_image = unwrapped, b.last_image = Image{} - unwrapped;
+    const Vec3 impulse = change * mu;
     log(t, i, j, impulse);
-    anchor(i, p.x, p.v + impulse * a.inverse_mass, t);
-    anchor(j, q.x, q.v - impulse * b.inverse_mass, t);
+    anchor(i, p.x, p.v + change * share_a, t);
+    anchor(j, q.x, q.v - change * share_b, t);
     wake(i, impulse, t);
     wake(j, impulse, t);
     if (e < 1 && !hop) watch(i, j, t, norm(v));
@@ -70,10 +73,9 @@ void Engine::hit_wall(int32_t i, int k, double t) {
     const Wall& w = world_.walls[size_t(k)];
     const Motion at = motion(i, t);
     Body& body = bodies_[size_t(i)];
-    const double r = spheres_[size_t(i)].r, mass = 1 / body.inverse_mass;
+    const double r = spheres_[size_t(i)].r, mass = body.mass;
     const double e = recent(i, t) ? 1 : w.restitution;
 
-    // Not normalised: v - (1+e) (v.d) d / d^2 keeps the energy at e = 1 whatever |d| rounds to.
     const Vec3 d = w.kind == WallKind::plane ? w.normal : -across(w, at.x);
     const double length = norm(d), speed = std::min(0.0, dot(at.v, d) / length);
     double press = std::max(0.0, -dot(acceleration(i), d) / length);
@@ -96,7 +98,7 @@ void Engine::hit_wall(int32_t i, int k, double t) {
     } else if (w.bounce_back) {
         v = v * -e;
     } else {
-        v += d * (-(1 + e) * (std::min(0.0, dot(v, d)) / norm2(d)));
+        v = reflect(v, d, e);
     }
     if (lasting || e < 1)
         dissipated_ += 0.5 * mass * (norm2(at.v) - norm2(v));
@@ -152,7 +154,7 @@ bool Engine::recent(int32_t i, double t) const {
 
 void Engine::watch(int32_t i, int32_t j, double t, double speed) {
     for (const int32_t k : {i, j}) {
-        if (k < 0 || bodies_[size_t(k)].inverse_mass == 0) continue;
+        if (k < 0 || bodies_[size_t(k)].fixed()) continue;
         if (watches_[size_t(k)].collapsed(t, speed, spheres_[size_t(k)].r) && collapse_.i == kNone)
             collapse_ = {clock_.time(t), i, j};
     }

@@ -115,7 +115,7 @@ void Engine::predict_pairs(int i, Event& best) const {
 void Engine::predict_walls(int i, Event& best) const {
     const Sphere& s = spheres_[size_t(i)];
     const Body& body = bodies_[size_t(i)];
-    if (body.inverse_mass == 0) return;
+    if (body.fixed()) return;
     const Vec3 a = acceleration(i);
     for (int k = 0; k < int(world_.walls.size()); ++k) {
         if (k == body.rests_on) continue;

@@ -1,17 +1,27 @@
-// Collision rules: a rule returns an impulse, the engine applies it to both partners.
+// Collision rules: what a rule returns, the engine applies to both partners, shared out by mass, so
+// that no rule can break the conservation of momentum.
 #pragma once
 
-#include "vec3.hpp"
+#include "exact.hpp"
 
 namespace carom {
 
-// Smooth spheres: J = -(1+e) mu (v.n) n acts on the first, -J on the second. Written with the
-// actual r, never with sigma, so that a gap of 1e-10 left by rounding costs 1e-17 of the energy
-// per collision instead of 1e-10. Two that part (by rounding, at a graze) are left alone.
-inline Vec3 smooth_impulse(const Vec3& r, const Vec3& v, double mu, double e) {
+// Smooth spheres: J = -(1+e) mu (v.n) n acts on the first, -J on the second. The rule gives J / mu,
+// the change of the relative velocity; the engine shares it out by mass. Written with the actual r,
+// never with sigma, so that a gap of 1e-10 left by rounding costs 1e-17 of the energy per collision
+// instead of 1e-10. Two that part (by rounding, at a graze) are left alone.
+inline Vec3 smooth(const Vec3& r, const Vec3& v, double e) {
     const double b = dot(r, v);
-    if (b >= 0) return {};
-    return r * (-(1 + e) * mu * (b / norm2(r)));
+    return b < 0 ? r * (-(1 + e) * (b / norm2(r))) : Vec3{};
+}
+
+// Reflection at a surface with inward direction d, of any length.
+inline Vec3 reflect(const Vec3& v, const Vec3& d, double e) {
+    const double b = dot(v, d);
+    if (b >= 0) return v;
+    const Pair d2 = norm2_twice(d);
+    const double k = -(1 + e) * (b / d2.hi);
+    return v + d * (k - k * (d2.lo / d2.hi));
 }
 
 // The rise of a rebound, in radii, below which contact under gravity counts as lasting. A ball

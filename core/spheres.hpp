@@ -50,11 +50,13 @@ static_assert(sizeof(Sphere) == 64);
 
 // The rest of the stored state, touched once per collision.
 struct Body {
-    double inverse_mass = 1;  // 0 for a fixed sphere
-    int32_t last = kNone;     // partner of the last event ...
-    Image last_image;         // ... and its image, counted in unwrapped positions
-    Image image;              // whole boxes travelled
-    int32_t rests_on = -1;    // wall it rests on, or -1
+    double mass = 1;        // infinite for a fixed sphere
+    int32_t last = kNone;   // partner of the last event ...
+    Image last_image;       // ... and its image, counted in unwrapped positions
+    Image image;            // whole boxes travelled
+    int32_t rests_on = -1;  // wall it rests on, or -1
+
+    bool fixed() const { return mass > 1e300; }
 };
 static_assert(sizeof(Body) == 40);
 

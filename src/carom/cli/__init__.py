@@ -1,0 +1,5 @@
+"""The command line: ``carom scenes``, ``show``, ``run``, ``compare``."""
+
+from carom.cli.commands import main
+
+__all__ = ["main"]

@@ -1,0 +1,248 @@
+"""Spheres under way: what is now, what has happened, and the engine that goes on from there."""
+
+import math
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom import edits, fit, mechanics
+from carom.engine import NO_LIMIT, Engine, Stop
+from carom.interrupts import HeldInterrupt
+from carom.rules import Smooth
+from carom.scene import Spheres
+from carom.state import EVENT, State
+from carom.walls import Wall, wall_names, world
+from carom.world import World
+
+MakeEngine = Callable[[State, World], Engine]
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """Everything about a world that is not a sphere, as people write it."""
+
+    walls: tuple[Wall, ...]
+    rule: Smooth
+    gravity: tuple[float, float, float]
+    collide: bool
+
+    def world(self) -> World:
+        """The same as numbers; contradictions are refused with `InputError`."""
+        return world(self.walls, self.rule, self.gravity, self.collide)
+
+
+class EventKeeper:
+    """The newest `limit` event records of one run, kept in the batches they came in."""
+
+    def __init__(self, limit: int) -> None:
+        self.limit = limit
+        self._batches: deque[NDArray[Any]] = deque()
+        self._count = 0
+
+    def clear(self) -> None:
+        """Forget all records."""
+        self._batches.clear()
+        self._count = 0
+
+    def append(self, batch: NDArray[Any]) -> None:
+        """Take a batch, and let go of old ones beyond the limit."""
+        self._batches.append(batch)
+        self._count += len(batch)
+        while self._batches and self._count - len(self._batches[0]) >= self.limit:
+            self._count -= len(self._batches.popleft())
+
+    def records(self) -> NDArray[Any]:
+        """(n,) EVENT, oldest first."""
+        joined = np.concatenate([np.zeros(0, EVENT), *self._batches])
+        return joined[max(0, len(joined) - self.limit) :]
+
+
+class Motion:
+    """A state, its surroundings, and an engine built from both when it is first needed.
+
+    A change from outside drops the engine; the next run builds one from the state of that
+    moment. What an engine has counted since it was built is banked before it goes.
+
+    Parameters
+    ----------
+    state : State
+    surroundings : Surroundings
+    make_engine : callable
+        ``(state, world) -> Engine``.
+    keep_events : int
+        How many of the newest events of a run `events` holds.
+    strict : bool
+        False for engines that let spheres overlap: once they have run, placement is not
+        checked any more.
+    """
+
+    def __init__(
+        self,
+        state: State,
+        surroundings: Surroundings,
+        make_engine: MakeEngine,
+        keep_events: int,
+        strict: bool = True,
+    ) -> None:
+        self._make_engine = make_engine
+        self._strict = strict
+        self._kept = EventKeeper(keep_events)
+        self._begin(state, surroundings)
+
+    def _begin(self, state: State, surroundings: Surroundings) -> None:
+        self._engine: Engine | None = None
+        self._snapshot: State | None = state
+        self._start: tuple[State, Surroundings] | None = None
+        self.surroundings, self.world = surroundings, surroundings.world()
+        self._dissipated = self._withheld = self._overlap = 0.0
+        self._energy_given = mechanics.energy(state, self.world)
+        self._kept.clear()
+
+    # What is now, and what has happened.
+
+    @property
+    def state(self) -> State:
+        """The state now; `change` takes another one, its arrays must stay as they are."""
+        if self._snapshot is None and self._engine is not None:
+            self._snapshot = self._engine.state()
+        assert self._snapshot is not None
+        return self._snapshot
+
+    @property
+    def start(self) -> State:
+        """The state in which the first run began."""
+        return self._start[0] if self._start else self.state
+
+    @property
+    def time(self) -> float:
+        """Simulated time."""
+        return self._engine.time if self._engine else self.state.time
+
+    @property
+    def collisions(self) -> int:
+        """Collisions between spheres since the start."""
+        return self._engine.collisions if self._engine else self.state.collisions
+
+    @property
+    def wall_collisions(self) -> int:
+        """Collisions with walls since the start."""
+        return self._engine.wall_collisions if self._engine else self.state.wall_collisions
+
+    @property
+    def dissipated(self) -> float:
+        """Energy the rules have taken since the start."""
+        return self._dissipated + (self._engine.dissipated if self._engine else 0.0)
+
+    @property
+    def withheld(self) -> float:
+        """Energy the contact-time cure has kept from being dissipated since the start."""
+        return self._withheld + (self._engine.withheld if self._engine else 0.0)
+
+    @property
+    def max_overlap(self) -> float:
+        """Largest (sigma - r)/sigma since the start."""
+        return max(self._overlap, self._engine.max_overlap() if self._engine else 0.0)
+
+    @property
+    def collapse(self) -> tuple[float, int, int] | None:
+        """(time, i, j) of an inelastic collapse that ended the last run."""
+        return self._engine.collapse if self._engine else None
+
+    @property
+    def events(self) -> NDArray[Any]:
+        """Records of the last run."""
+        return self._kept.records()
+
+    @property
+    def energy_drift(self) -> float:
+        """(energy now + energy taken by rules - energy given)/energy given."""
+        error = mechanics.energy(self.state, self.world) + self.dissipated - self._energy_given
+        given = abs(self._energy_given)
+        # Where kinetic and potential energy cancel, the sum is no measure but their sizes are.
+        sizes = mechanics.energy_sizes(self.state, self.world)
+        scale = given if given > 1e-9 * sizes else sizes
+        return error / scale if scale > 0 else 0.0
+
+    # Changes from outside.
+
+    def change(self, state: State, surroundings: Surroundings | None = None) -> None:
+        """Go on from another state, or in other surroundings."""
+        self._dissipated, self._withheld = self.dissipated, self.withheld
+        self._overlap = self.max_overlap
+        # Energy that a change brings is given, so the drift goes on counting errors only.
+        self._energy_given -= mechanics.energy(self.state, self.world)
+        self._engine, self._snapshot = None, state
+        if surroundings is not None:
+            self.surroundings, self.world = surroundings, surroundings.world()
+        self._energy_given += mechanics.energy(state, self.world)
+
+    def assign(self, name: str, index: int | slice, value: Any) -> None:
+        """Replace one array, or one row of it, if the result can be run."""
+        after = edits.assigned(self.state, name, index, value, self.world.period)
+        if name in ("position", "radius"):
+            self._check(after, self.world, self.surroundings)
+        else:
+            fit.check_values(after)
+            if name == "velocity" and self._strict:  # not along the inside of a round wall
+                fit.check_walls(after, self.world, wall_names(self.surroundings.walls))
+        self.change(after)
+
+    def extend(self, spheres: Spheres) -> None:
+        """Add spheres, if they fit."""
+        after = edits.joined(self.state, spheres, self.world.period)
+        self._check(after, self.world, self.surroundings)
+        self.change(after)
+
+    def surround(self, surroundings: Surroundings) -> None:
+        """Change walls, rule or gravity; whatever was resting wakes."""
+        there = surroundings.world()
+        state = replace(self.state, resting=np.zeros(len(self.state), np.bool_))
+        if surroundings.walls != self.surroundings.walls:
+            state.position, boxes = fit.wrap(state.position, there.period)
+            state.image = np.where(there.period == self.world.period, state.image, boxes)
+            self._check(state, there, surroundings)
+        self.change(state, surroundings)
+
+    def _check(self, state: State, there: World, surroundings: Surroundings) -> None:
+        if self._strict or self._start is None:
+            fit.check(state, there, wall_names(surroundings.walls))
+        else:
+            fit.check_values(state)
+
+    # Time goes on.
+
+    def restart(self) -> None:
+        """Go back to where the first run began: spheres, surroundings, counters."""
+        self._begin(*(self._start or (self.state, self.surroundings)))
+
+    def advance(
+        self,
+        until: float = math.inf,
+        collisions: int = NO_LIMIT,
+        events: int = NO_LIMIT,
+        progress: Callable[[], object] | None = None,
+    ) -> Stop:
+        """Run to a time or for a count; Ctrl-C and `progress` get a turn between slices."""
+        self._kept.clear()
+        if self._start is None:
+            self._start = (self.state, self.surroundings)
+        if self._engine is None:
+            self._engine = self._make_engine(self.state, self.world)
+        engine = self._engine
+        pairs, walls = engine.collisions, engine.wall_collisions
+        stop = Stop.SLICE
+        with HeldInterrupt() as interrupt:
+            while stop is Stop.SLICE:
+                hits = engine.collisions - pairs
+                total = hits + engine.wall_collisions - walls
+                stop = Stop(engine.advance(until, collisions - hits, events - total))
+                self._snapshot = None
+                self._kept.append(engine.take_events())
+                if progress is not None:
+                    progress()
+                interrupt.deliver()
+        return stop
