@@ -9,11 +9,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "contact.hpp"
-#include "growth.hpp"
+#include "memory.hpp"
 #include "spheres.hpp"
 
 namespace carom {
@@ -79,7 +78,6 @@ public:
                 walked = 0;
             }
             ++current_;
-            turned_ = true;
             open(events);
         }
         return heap_.front().t <= limit ? &heap_.front() : nullptr;
@@ -89,17 +87,6 @@ public:
         std::pop_heap(heap_.begin(), heap_.end(), later);
         heap_.pop_back();
     }
-
-    // True once after each new bucket was taken in hand: the moment to look ahead.
-    bool turned() { return std::exchange(turned_, false); }
-
-    // Calls f(i) for the spheres in the first line of the bucket `k` after the one in hand.
-    template <class F>
-    void peek(int k, F f) const {
-        const Line& line = lines_[size_t((current_ + k) & mask_)];
-        for (int n = 0; n < line.n; ++n) f(line.id[n]);
-    }
-    const void* line(int k) const { return &lines_[size_t((current_ + k) & mask_)]; }
 
     size_t bytes() const { return lines_.capacity() * sizeof(Line); }
 
@@ -176,7 +163,6 @@ private:
     std::vector<Line> lines_;
     int32_t spare_ = -1;  // chain of spare lines
     std::vector<Entry> heap_;
-    bool turned_ = false;
     std::vector<int32_t> again_;
 };
 

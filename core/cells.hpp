@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "growth.hpp"
+#include "memory.hpp"
 #include "vec3.hpp"
 
 namespace carom {
@@ -169,23 +169,25 @@ private:
         const Axis az = axis(s.centre.z, s.reach + 0.5 / iw.z, iw.z, l.n[2]);
         const bool exact = ax.exact && ay.exact && az.exact && iw.x == iw.y && iw.y == iw.z;
         const int reach = fine_reach(s.reach, l) + 2;  // 2 > sqrt(3): both places are rounded
-        int64_t z = az.slot;
-        for (int64_t kz = 0; kz < az.count; ++kz, z = z + 1 == az.n ? 0 : z + 1) {
-            int64_t y = ay.slot;
-            const int dz = az.near - 256 * int(kz);
-            for (int64_t ky = 0; ky < ay.count; ++ky, y = y + 1 == ay.n ? 0 : y + 1) {
-                const int dy = ay.near - 256 * int(ky);
-                const int64_t row = l.first + (z * ay.n + y) * ax.n;
-                int64_t x = ax.slot;
-                for (int64_t kx = 0; kx < ax.count; ++kx, x = x + 1 == ax.n ? 0 : x + 1) {
-                    const Line* line = &lines_[size_t(row + x)];
-                    if (exact)
-                        filter(*line, ax.near - 256 * int(kx), dy, dz, reach, s, shells, out);
-                    else
-                        all(*line, s, shells, out);
+        const auto each = [&](auto visit) {
+            int64_t z = az.slot;
+            for (int64_t kz = 0; kz < az.count; ++kz, z = z + 1 == az.n ? 0 : z + 1) {
+                int64_t y = ay.slot;
+                for (int64_t ky = 0; ky < ay.count; ++ky, y = y + 1 == ay.n ? 0 : y + 1) {
+                    const Line* row = &lines_[size_t(l.first + (z * ay.n + y) * ax.n)];
+                    int64_t x = ax.slot;
+                    for (int64_t kx = 0; kx < ax.count; ++kx, x = x + 1 == ax.n ? 0 : x + 1)
+                        visit(row[x], int(kx), int(ky), int(kz));
                 }
             }
-        }
+        };
+        each([](const Line& line, int, int, int) { fetch(&line); });
+        if (!exact)
+            return each([&](const Line& line, int, int, int) { all(line, s, shells, out); });
+        each([&](const Line& line, int x, int y, int z) {
+            filter(line, ax.near - 256 * x, ay.near - 256 * y, az.near - 256 * z, reach, s, shells,
+                   out);
+        });
     }
 
     void filter(const Line& head, int dx, int dy, int dz, int reach, const Shell& s,

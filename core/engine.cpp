@@ -81,35 +81,6 @@ Engine::Motion Engine::motion(int i, double t) const {
     return {s.x + (s.v + world_.gravity * (0.5 * dt)) * dt, s.v + world_.gravity * dt};
 }
 
-// With more spheres than the caches hold, every event would wait for memory a dozen times. The
-// calendar knows what comes next: ask for it two and three buckets ahead.
-void Engine::look_ahead() const {
-    const auto fetch = [](const void* p) { __builtin_prefetch(p); };
-    fetch(calendar_.line(4));
-    calendar_.peek(3, [&](int i) { fetch(&events_[size_t(i)]); });
-    const auto fetch_sphere = [&](int i) {
-        fetch(&spheres_[size_t(i)]);
-        fetch(&bodies_[size_t(i)]);
-        fetch(&shells_[size_t(i)]);
-        fetch(rows_.line(i));
-        fetch(static_cast<const char*>(rows_.line(i)) + 64);
-    };
-    calendar_.peek(2, [&](int i) {
-        fetch_sphere(i);
-        const int32_t j = events_[size_t(i)].partner;
-        if (j >= 0) {
-            fetch_sphere(j);
-            fetch(&events_[size_t(j)]);
-        }
-    });
-    calendar_.peek(1, [&](int i) {
-        for (const int32_t k : rows_.of(i)) fetch(&spheres_[size_t(k)]);
-        const int32_t j = events_[size_t(i)].partner;
-        if (j < 0) return;
-        for (const int32_t k : rows_.of(j)) fetch(&spheres_[size_t(k)]);
-    });
-}
-
 Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
     const PlainArithmetic plain;
     if (collapse_.i != kNone) return Stop::collapse;
@@ -130,7 +101,6 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
             user_ = std::max(user_, limit);
             return Stop::time;
         }
-        if (far_ && calendar_.turned()) look_ahead();
         const Entry entry = *top;
         const Event& event = events_[size_t(entry.id)];
         if (event.t == entry.t && event.partner > kEscape && event.t >= clock_.epoch &&

@@ -102,7 +102,6 @@ private:
 
     // engine.cpp
     Motion motion(int i, double t) const;
-    void look_ahead() const;
     Vec3 acceleration(int i) const { return falls_[size_t(i)] ? world_.gravity : Vec3{}; }
     Vec3 whole_boxes(const Vec3& x) const { return nearest(x * inverse_period_); }
 
@@ -136,7 +135,6 @@ private:
     Vec3 inverse_period_;
     bool gravity_ = false, periodic_ = false, inelastic_ = false;
     bool shells_on_ = true;        // neighbours matter at all
-    bool far_ = false;             // more spheres than the caches hold
     double half_period_ = kNever;  // of the shortest periodic axis
 
     Clock clock_;

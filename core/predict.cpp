@@ -68,6 +68,7 @@ template <bool kGravity, bool kImages>
 void Engine::predict_pairs(int i, Event& best) const {
     const Sphere& p = spheres_[size_t(i)];
     const Vec3 pa = kGravity ? acceleration(i) : Vec3{};
+    for (const int32_t j : rows_.of(i)) fetch(&spheres_[size_t(j)]);
     for (const int32_t j : rows_.of(i)) {
         const Sphere& q = spheres_[size_t(j)];
         // From the later anchor on both fly freely: the prediction depends on nothing else.
@@ -239,6 +240,9 @@ void Engine::make_shell(int i) {
         else
             gone.push_back(j);
     }
+    for (const int32_t j : gone) fetch(rows_.line(j));
+    for (const int32_t j : found_)
+        if (mark_[size_t(j)] == stamp_) fetch(rows_.line(j));
     for (const int32_t j : gone) {
         rows_.remove(i, j);
         rows_.remove(j, i);

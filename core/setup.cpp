@@ -40,7 +40,6 @@ Vec3 extent(const std::vector<Sphere>& spheres, const Vec3& period) {
 void Engine::choose_shells(const Tuning& tuning) {
     constexpr double kNeighbours = 11;
     if (!shells_on_) return;
-    far_ = size() > 16000;
     const double r = median_radius(spheres_);
     double largest = 0, volume = 1, giants = 0;
     const Vec3 box = extent(spheres_, world_.period);
