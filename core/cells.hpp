@@ -66,6 +66,7 @@ public:
     size_t bytes() const { return lines_.capacity() * sizeof(Line); }
 
 private:
+    static constexpr double kPerCell = 2.5;  // shells, at the usual margin
     static constexpr int kSlots = 7;
     struct alignas(64) Line {
         int32_t n = 0;
@@ -95,7 +96,7 @@ private:
 
     Level make_level(int k) {
         const double w = std::ldexp(width_, k);
-        const double want = std::cbrt(double(count_) / std::ldexp(1.0, std::min(3 * k, 60)));
+        const double want = std::cbrt(double(count_) / std::ldexp(kPerCell, std::min(3 * k, 60)));
         const auto open = int64_t(std::clamp(std::ceil(want), 4.0, 1024.0));
         Level level;
         const double p[3] = {period_.x, period_.y, period_.z};

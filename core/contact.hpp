@@ -37,8 +37,9 @@ public:
         : r_(r), v_(v), a_(a), sigma2_(sigma * sigma), s_(s) {}
 
     // First t >= 0 with F <= 0 and F' < 0. F is split at the roots of F'; on the first falling
-    // piece that ends at F <= 0 the event is the piece's root, or its start if F <= 0 there.
-    double first() const;
+    // piece that ends at F <= 0 the event is the piece's root, or its start if F <= 0 there. Two
+    // that have `just_met` part: if rounding says they still approach, that piece is skipped.
+    double first(bool just_met = false) const;
 
 private:
     Vec3 at(double t) const { return r_ + (v_ + a_ * (0.5 * t)) * t; }
@@ -118,14 +119,14 @@ inline double Approach::root(double lo, double hi) const {
     return t;
 }
 
-inline double Approach::first() const {
+inline double Approach::first(bool just_met) const {
     double knots[5] = {0, 0, 0, 0, 0};
     const int n = stationary(knots + 1);
     for (int k = 0; k <= n; ++k) {
         const double start = knots[k];
         const bool last = k == n;
         const double probe = last ? 2 * start + 1 : 0.5 * (start + knots[k + 1]);
-        if (!(half_slope(probe) < 0)) continue;
+        if (!(half_slope(probe) < 0) || (just_met && k == 0)) continue;
         const auto inside = [this](double t) { return -value(t); };
         const double end = last ? detail::beyond(inside, start, probe - start) : knots[k + 1];
         if (value(end) > 0) continue;

@@ -104,6 +104,7 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
         const Entry entry = *top;
         const Event& event = events_[size_t(entry.id)];
         if (event.t == entry.t && event.partner > kEscape && event.t >= clock_.epoch &&
+            epoch_events_ > 0 &&
             (event.partner < 0 || events_[size_t(event.partner)].count == event.partner_count)) {
             // The first physical event beyond this epoch is due.
             begin_epoch(entry.t);

@@ -60,6 +60,12 @@ struct Tuning {         // bookkeeping only: no bit of a trajectory depends on i
 
 constexpr double kEndless = 0x1p60;  // margins: a shell wider than positions are resolved
 
+// How one sphere moves as seen from another, from time `from` on.
+struct Relative {
+    Vec3 r, v, a;
+    double from;
+};
+
 class Engine {
 public:
     Engine(const std::vector<StartSphere>& start, double time, const World& world,
@@ -114,6 +120,7 @@ private:
     void consider_pair(int i, int32_t j, const Vec3& r, const Vec3& v, const Vec3& a, Image m,
                        double sigma, double from, Event& best) const;
     bool precedes(int i, const Event& p, const Event& q) const;
+    Relative relative(int i, int j) const;
     double escape_time(int i) const;
     void escape(int i);
     bool crowded(int i) const;

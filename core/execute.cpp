@@ -28,7 +28,11 @@ void Engine::refresh(int i) {
 
 void Engine::collide(int32_t i, int32_t j, Image m, double t) {
     const Motion p = motion(i, t), q = motion(j, t);
-    const Vec3 r = p.x - q.x - shift(m, world_.period), v = p.v - q.v;
+    // Not the difference of the two places: that loses digits far from the origin.
+    const Relative rel = relative(i, j);
+    const double dt = t - rel.from;
+    const Vec3 r = rel.r - shift(m, world_.period) + (rel.v + rel.a * (0.5 * dt)) * dt;
+    const Vec3 v = rel.v + rel.a * dt;
     Body &a = bodies_[size_t(i)], &b = bodies_[size_t(j)];
     const double ri = spheres_[size_t(i)].r, rj = spheres_[size_t(j)].r;
     const double distance = norm(r), speed = std::min(0.0, dot(r, v) / distance);

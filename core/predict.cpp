@@ -45,16 +45,21 @@ bool Engine::precedes(int i, const Event& p, const Event& q) const {
 // One pair in one image. r, v, a: relative motion at time `from`, the later of the two anchors.
 void Engine::consider_pair(int i, int32_t j, const Vec3& r, const Vec3& v, const Vec3& a, Image m,
                            double sigma, double from, Event& best) const {
-    double wait;
-    if (norm2(a) == 0) {
+    double wait = kNever;
+    const bool free = norm2(a) == 0;
+    if (free) {
         wait = contact_time(r, v, sigma);
         if (wait == kNever) return;
-        // Two that have just collided cannot meet again in that image before either has had
-        // another event. Without this, rounding repeats collisions of no speed for ever.
-        const Body &p = bodies_[size_t(i)], &q = bodies_[size_t(j)];
-        if (p.last == j && q.last == i && p.last_image == m + p.image - q.image) return;
+    }
+    // Two that have just collided cannot meet again in that image before either has had another
+    // event, unless something presses them together. Without this, rounding repeats collisions of
+    // no speed for ever.
+    const Body &p = bodies_[size_t(i)], &q = bodies_[size_t(j)];
+    const bool just_met = p.last == j && q.last == i && p.last_image == m + p.image - q.image;
+    if (free) {
+        if (just_met) return;
     } else {
-        wait = Approach(r, v, a, sigma, 1).first();
+        wait = Approach(r, v, a, sigma, 1).first(just_met);
         if (wait == kNever) return;
     }
     Event e = best;
@@ -64,26 +69,29 @@ void Engine::consider_pair(int i, int32_t j, const Vec3& r, const Vec3& v, const
     if (precedes(i, e, best)) best = e;
 }
 
+// From the later anchor on both fly freely: what is predicted depends on nothing else.
+inline Relative relative_free(const Sphere& p, const Sphere& q) {
+    const double from = p.t > q.t ? p.t : q.t;
+    return {(p.x + p.v * (from - p.t)) - (q.x + q.v * (from - q.t)), p.v - q.v, {}, from};
+}
+
+Relative Engine::relative(int i, int j) const {
+    const Sphere &p = spheres_[size_t(i)], &q = spheres_[size_t(j)];
+    if (!gravity_) return relative_free(p, q);
+    const Vec3 pa = acceleration(i), qa = acceleration(j);
+    const double from = p.t > q.t ? p.t : q.t, dp = from - p.t, dq = from - q.t;
+    return {flown(p.x, p.v, pa, dp) - flown(q.x, q.v, qa, dq), (p.v + pa * dp) - (q.v + qa * dq),
+            pa - qa, from};
+}
+
 template <bool kGravity, bool kImages>
 void Engine::predict_pairs(int i, Event& best) const {
     const Sphere& p = spheres_[size_t(i)];
-    const Vec3 pa = kGravity ? acceleration(i) : Vec3{};
     for (const int32_t j : rows_.of(i)) fetch(&spheres_[size_t(j)]);
     for (const int32_t j : rows_.of(i)) {
         const Sphere& q = spheres_[size_t(j)];
-        // From the later anchor on both fly freely: the prediction depends on nothing else.
-        const double from = p.t > q.t ? p.t : q.t;
-        const double dp = from - p.t, dq = from - q.t;
-        Vec3 r, v, a;
-        if constexpr (kGravity) {
-            const Vec3 qa = acceleration(j);
-            r = flown(p.x, p.v, pa, dp) - flown(q.x, q.v, qa, dq);
-            v = (p.v + pa * dp) - (q.v + qa * dq);
-            a = pa - qa;
-        } else {
-            r = (p.x + p.v * dp) - (q.x + q.v * dq);
-            v = p.v - q.v;
-        }
+        Relative rel = kGravity ? relative(i, j) : relative_free(p, q);
+        auto& [r, v, a, from] = rel;
         const double sigma = p.r + q.r;
         Vec3 m;  // image, chosen from where both are now
         if (periodic_) {

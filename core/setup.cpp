@@ -127,23 +127,29 @@ void Engine::predict_all() {
 
 // Flies every sphere to the start of the epoch in which offset t falls, anchors it there and
 // predicts everything anew. This is the one change of stored state that is not a collision; it
-// happens when the first physical event beyond the epoch is due, so nobody's bookkeeping moves it.
+// happens when a physical event beyond the epoch is due, so nobody's bookkeeping moves it. Not
+// after a silent epoch: its first event is best solved from the anchors as they are.
 void Engine::begin_epoch(double t) {
     const double step = clock_.advance(t);
     for (size_t i = 0; i < size(); ++i) {
+        Sphere& s = spheres_[i];
+        if (s.t > step) {  // anchored at the late event of an otherwise silent epoch
+            s.t -= step;
+            continue;
+        }
         const Motion at = motion(int(i), step);
-        spheres_[i].x = at.x;
-        spheres_[i].v = at.v;
-        spheres_[i].t = 0;
+        s.x = at.x;
+        s.v = at.v;
+        s.t = 0;
         wrap(int32_t(i));
     }
     for (double& touch : last_touch_) touch -= step;
     for (Watch& w : watches_) w.start -= step;
     user_ -= step;
     log_shift_ -= step;
-    now_ = 0;
+    now_ = std::max(0.0, now_ - step);
     // A gas that cools or heats keeps its number of collisions per epoch.
-    if (epoch_events_ > 0 && epoch_events_ < 4 * int64_t(size())) clock_.epoch *= 2;
+    if (epoch_events_ < 4 * int64_t(size())) clock_.epoch *= 2;
     if (epoch_events_ > 64 * int64_t(size())) clock_.epoch *= 0.5;
     epoch_events_ = 0;
     predict_all();

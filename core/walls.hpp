@@ -58,11 +58,11 @@ inline double exit_time(const Vec3& r, const Vec3& v, double reach) {
 }
 
 // Time after its anchor at which sphere `s`, accelerating at `a`, reaches wall `w`. `just_left`:
-// its last event was this wall, and a plane it left in a straight line cannot be met again.
+// its last event was this wall, and a plane it leaves unpressed cannot be met again.
 inline double wall_time(const Wall& w, const Sphere& s, const Vec3& a, bool just_left) {
     if (w.kind == WallKind::plane) {
         const double h = dot(w.normal, a);
-        if (just_left && h == 0) return kNever;
+        if (just_left && h >= 0) return kNever;
         return plane_time(dot(w.normal, s.x) - w.offset - s.r, dot(w.normal, s.v), h);
     }
     const Vec3 r = across(w, s.x), v = across(w, s.v), g = across(w, a);

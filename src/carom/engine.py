@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom._core import Engine as _Core
+from carom.errors import InputError
 from carom.state import EVENT, State
 from carom.world import World
 
@@ -66,7 +67,8 @@ class Engine(Protocol):
     ) -> Stop:
         """Run to `until`, or until that many collisions (or events, walls included) happened.
 
-        Returns early with `Stop.SLICE` after about 50 ms of work; counts are per call.
+        Returns early with `Stop.SLICE` after about 50 ms of work; counts are per call. A time that
+        is past, or nan, is an `InputError`.
         """
 
     def take_events(self) -> NDArray[Any]:
@@ -171,6 +173,9 @@ class FastEngine:
         self, until: float, max_collisions: int = NO_LIMIT, max_events: int = NO_LIMIT
     ) -> Stop:
         """Run to `until` or a count; see `Engine.advance`."""
+        if not until >= self.time:
+            msg = f"cannot advance to time {until}: it is already {self.time}; give a later time"
+            raise InputError(msg)
         stop = Stop(self._core.advance(until, max_collisions, max_events))
         if _CHECK:
             self._core.check()
