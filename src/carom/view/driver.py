@@ -1,0 +1,244 @@
+"""Lets a simulation run in a thread of its own, at the pace people want to see."""
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from carom.errors import CaromError
+from carom.state import State
+from carom.view.portrait import Viewable, portrait
+from carom.view.protocol import Meters, encode_frame, encode_scene
+
+INTERVAL = 1 / 60  #: seconds between frames
+SHARE = 0.7  #: of an interval for computing; the rest is for the frame and the page
+PATIENCE = 0.04  #: seconds after which a run that takes longer than foreseen is cut short
+IDLE = 0.25  #: seconds between looks around while nothing moves
+METERS_EVERY = 0.1  #: seconds between readings of the energies, which read all spheres again
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """What pages may be sent: the newest frame and the scene it belongs to."""
+
+    number: int
+    frame: bytes
+    scene_number: int
+    scene: bytes
+    failure: str
+
+
+class _Enough(Exception):
+    """Ends a run between two slices of the engine."""
+
+
+class Pacer:
+    """How much simulated time fits into one interval, learnt from what the last run has cost.
+
+    Denser stretches of time come without warning, so long runs are approached in steps:
+    by doubling, faster only while runs cost next to nothing.
+    """
+
+    def __init__(self) -> None:
+        self._limit = 0.0
+
+    def allow(self, wanted: float) -> float:
+        """Return `wanted`, or as much of it as is known to fit."""
+        return min(wanted, self._limit) if self._limit > 0 else wanted / 16
+
+    def learn(self, duration: float, seconds: float, budget: float) -> None:
+        """Take note that `duration` of simulated time took `seconds` of the `budget`."""
+        if seconds > budget:
+            self._limit = duration * budget / seconds
+        else:
+            spare = min(16.0, max(2.0, 0.5 * budget / max(seconds, 1e-9)))
+            self._limit = max(self._limit, spare * duration)
+
+
+class Driver:
+    """Runs a simulation in slices, obeys commands between them, hands out snapshots.
+
+    Nothing here waits for a page. A snapshot is made only when `hungry` says that a page
+    can take one; without any page the simulation waits.
+
+    Parameters
+    ----------
+    sim : Viewable
+        Used only by the driver's thread while that is alive.
+    publish : callable
+        Takes each `Snapshot`, in the driver's thread.
+    hungry : callable
+        Does a page want a snapshot?
+    watched : callable
+        Is any page there?
+    """
+
+    def __init__(
+        self,
+        sim: Viewable,
+        publish: Callable[[Snapshot], None],
+        hungry: Callable[[], bool],
+        watched: Callable[[], bool],
+    ) -> None:
+        self._sim, self._publish, self._hungry, self._watched = sim, publish, hungry, watched
+        self._wake = threading.Event()
+        self._stopping = False
+        self._lock = threading.Lock()
+        self._orders: dict[str, float] = {}
+        self._thread = threading.Thread(target=self._main, name="carom-view-run", daemon=True)
+        self._pacer = Pacer()
+        self._playing, self._speed, self._reached = True, 1.0, 0.0
+        self._failure = ""
+        self._epoch = self._number = self._scene_number = 0
+        self._scene, self._described = b"", -1
+        self._changed = True
+        self._read_at = -1.0
+        self._energies = (0.0, 0.0, 0.0, 0.0)
+        #: What ended the thread before its time, if anything did.
+        self.error: BaseException | None = None
+        #: Called when the thread ends.
+        self.on_end: Callable[[], Any] = lambda: None
+
+    def start(self) -> None:
+        """Begin."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End the thread, at the latest after one slice of the engine."""
+        self._stopping = True
+        self._wake.set()
+        if self._thread.ident is not None:
+            self._thread.join()
+
+    def order(self, what: str, value: float = 1.0) -> None:
+        """Ask for "playing" (0 or 1), "speed" or "restart"; the newest of each counts."""
+        with self._lock:
+            self._orders[what] = value
+        self._wake.set()
+
+    def poke(self) -> None:
+        """A page can take a frame now: look whether there is one for it."""
+        self._wake.set()
+
+    def _main(self) -> None:
+        try:
+            self._loop()
+        except BaseException as error:
+            self.error = error
+        self.on_end()
+
+    def _loop(self) -> None:
+        self._run(0.0)  # builds the engine while the page loads
+        last = time.perf_counter()
+        while not self._stopping:
+            self._obey()
+            now = time.perf_counter()
+            moving = self._playing and self._watched()
+            if moving:
+                self._step(now - last)
+            last = now
+            if self._changed and self._hungry():
+                self._hand_out()
+            self._rest(now + (INTERVAL if moving else IDLE), moving)
+
+    def _rest(self, until: float, moving: bool) -> None:
+        """Wait for the next step. Orders are obeyed at once, and end the wait unless moving."""
+        while not self._stopping and (left := until - time.perf_counter()) > 0:
+            if self._wake.wait(left):
+                self._wake.clear()
+                if not moving or self._orders:
+                    return
+
+    def _obey(self) -> None:
+        with self._lock:
+            orders, self._orders = self._orders, {}
+        if not orders:
+            return
+        if "speed" in orders:
+            self._speed = orders["speed"]
+        if "playing" in orders:
+            self._playing = bool(orders["playing"]) and not self._failure
+        if "restart" in orders:
+            self._sim.reset()
+            self._failure = ""
+            self._playing = bool(orders.get("playing", 1.0))
+            self._epoch += 1
+            self._read_at = -1.0
+            self._reached = 0.0
+            self._run(0.0)
+        self._changed = True
+
+    def _step(self, seconds: float) -> None:
+        """Run for as much simulated time as `seconds` of the clock stand for."""
+        sim = self._sim
+        # Time of this thread, not of the clock: what other programs take is not the engine's cost.
+        before, start = sim.time, time.thread_time()
+        # What the engine cannot do in time is dropped: the motion is slower, never jumpy.
+        wanted = sim.pace * self._speed * min(seconds, IDLE)
+        self._run(self._pacer.allow(wanted))
+        self._changed = True
+        done = sim.time - before
+        budget = min(SHARE * max(seconds, INTERVAL), PATIENCE)
+        self._pacer.learn(done, time.thread_time() - start, budget)
+        if seconds > 0:
+            share = min(1.0, seconds / 0.5)
+            self._reached += share * (done / (sim.pace * seconds) - self._reached)
+
+    def _run(self, duration: float) -> None:
+        deadline = time.perf_counter() + PATIENCE
+
+        def look(_: object) -> None:
+            if self._stopping or time.perf_counter() > deadline:
+                raise _Enough
+
+        try:
+            self._sim.run(duration=duration, progress=look)
+        except _Enough:
+            pass
+        except CaromError as error:
+            self._failure, self._playing = str(error), False
+
+    def _hand_out(self) -> None:
+        state = self._sim.state
+        self._describe(state)
+        self._number += 1
+        clock = time.perf_counter()
+        kinetic, potential, dissipated, drift = self._read_energies(clock)
+        gx, gy, gz = self._sim.world.gravity.tolist()
+        meters = Meters(
+            clock=clock,
+            gravity=(gx, gy, gz),
+            kinetic=kinetic,
+            potential=potential,
+            dissipated=dissipated,
+            drift=drift,
+            speed=self._speed,
+            reached=self._reached,
+            epoch=self._epoch,
+            scene=self._scene_number,
+            playing=self._playing,
+            failed=bool(self._failure),
+        )
+        frame = encode_frame(state, meters)
+        self._changed = False
+        self._publish(Snapshot(self._number, frame, self._scene_number, self._scene, self._failure))
+
+    def _describe(self, state: State) -> None:
+        """Make the scene message, again after every jump of the motion."""
+        if self._described == self._epoch:
+            return
+        self._described = self._epoch
+        self._scene_number += 1
+        self._scene = encode_scene(state, self._scene_number, portrait(self._sim, state))
+
+    def _read_energies(self, clock: float) -> tuple[float, float, float, float]:
+        if self._read_at < 0 or clock - self._read_at > METERS_EVERY or not self._playing:
+            sim, self._read_at = self._sim, clock
+            self._energies = (
+                sim.kinetic_energy,
+                sim.potential_energy,
+                sim.dissipated,
+                sim.energy_drift,
+            )
+        return self._energies

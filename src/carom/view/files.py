@@ -1,0 +1,75 @@
+"""The page's files: a fixed table read once, so no request ever names a path on the disk."""
+
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+
+HTML, CSS, JS, SVG = "text/html", "text/css", "text/javascript", "image/svg+xml"
+
+#: Address of each file, its name in `static/`, its type.
+TABLE = {
+    "/": ("index.html", HTML),
+    "/style.css": ("style.css", CSS),
+    "/icon.svg": ("icon.svg", SVG),
+    **{
+        f"/{name}.js": (f"{name}.js", JS)
+        for name in (
+            "main",
+            "camera",
+            "colors",
+            "connection",
+            "controls",
+            "gestures",
+            "glsl",
+            "interpolation",
+            "legend",
+            "matrix",
+            "numbers",
+            "program",
+            "protocol",
+            "readout",
+            "renderer",
+            "shaders",
+            "timeline",
+            "walls",
+        )
+    },
+}
+
+
+@dataclass(frozen=True, slots=True)
+class StaticFile:
+    """One file as it is sent."""
+
+    content: bytes
+    content_type: str
+
+
+@cache
+def load() -> dict[str, StaticFile]:
+    """All files by address."""
+    folder = files("carom.view") / "static"
+    return {
+        address: StaticFile((folder / name).read_bytes(), f"{kind}; charset=utf-8")
+        for address, (name, kind) in TABLE.items()
+    }
+
+
+def security_headers(port: int) -> dict[str, str]:
+    """Headers that let the page load from, and talk to, this server alone."""
+    # Safari before 15.4 does not count ws: as 'self', so the sockets are named.
+    sockets = f"ws://127.0.0.1:{port} ws://localhost:{port}"
+    policy = (
+        f"default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; "
+        f"connect-src 'self' {sockets}; base-uri 'none'; form-action 'none'; "
+        f"frame-ancestors 'none'"
+    )
+    return {
+        "Content-Security-Policy": policy,
+        "X-Content-Type-Options": "nosniff",
+        "X-Frame-Options": "DENY",
+        "Referrer-Policy": "no-referrer",
+        "Cross-Origin-Opener-Policy": "same-origin",
+        "Cross-Origin-Resource-Policy": "same-origin",
+        "Cache-Control": "no-store",
+    }

@@ -1,0 +1,93 @@
+/**
+ * Exact motion between two keyframes: the vertex shader's formulas (`glsl.js`, MOTION) once
+ * more in double precision, for tests and for whatever needs a place without drawing it.
+ *
+ * Between t₀ and t₁ = t₀ + h the path forward from (x₀, v₀) and the path backward from (x₁, v₁)
+ * are both known. Without an impulse they are one path. With exactly one they cross at it: with
+ * w₁ = v₁ − g h, d = x₁ − ½ g h² − x₀ − w₁ h, the crossing is at d·(v₀ − w₁)/|v₀ − w₁|². With
+ * more, places are mixed in a straight line, which never leaves a convex world.
+ *
+ * @typedef {import("./matrix.js").Vec3} Vec3
+ * @typedef {object} Moment one sphere in one keyframe
+ * @property {Vec3} x
+ * @property {Vec3} v
+ * @property {number} count its count byte
+ */
+import { add, dot, scale, sub } from "./matrix.js";
+import { STILL } from "./protocol.js";
+
+/**
+ * Shift x by whole boxes to the image nearest to a place.
+ * @param {Vec3} x @param {Vec3} place @param {Vec3} period 0 on axes that are not periodic
+ */
+export function nearestImage(x, place, period) {
+  return /** @type {Vec3} */ (
+    x.map((value, k) =>
+      period[k] > 0 ? value + period[k] * Math.round((place[k] - value) / period[k]) : value,
+    )
+  );
+}
+
+/** @param {Vec3} x @param {Vec3} period */
+export function wrap(x, period) {
+  return /** @type {Vec3} */ (
+    x.map((value, k) =>
+      period[k] > 0 ? value - period[k] * Math.floor(value / period[k] + 0.5) : value,
+    )
+  );
+}
+
+/** @param {Vec3} a @param {Vec3} b @param {number} s @returns {Vec3} */
+const mix = (a, b, s) => add(scale(a, 1 - s), scale(b, s));
+
+/**
+ * Place and squared speed at s ∈ [0, h] after the first of two keyframes.
+ * @param {Moment} a @param {Moment} b
+ * @param {number} s @param {number} h
+ * @param {Vec3} gravity @param {Vec3} period
+ * @returns {{x: Vec3, v2: number}}
+ */
+export function motion(a, b, s, h, gravity, period) {
+  if (!(h > 0)) return { x: b.x, v2: dot(b.v, b.v) };
+  const hits = (b.count - a.count) & 127;
+  if (hits > 1 || (a.count & STILL) !== (b.count & STILL)) return blend(a, b, s, h, period);
+  const g = a.count & STILL ? /** @type {Vec3} */ ([0, 0, 0]) : gravity;
+  const forward = add(a.x, add(scale(a.v, s), scale(g, 0.5 * s * s)));
+  const ahead = add(a.v, scale(g, s));
+  const behind = sub(b.v, scale(g, h - s));
+  const backward = (/** @type {Vec3} */ x1) =>
+    add(x1, sub(scale(g, 0.5 * (h - s) ** 2), scale(b.v, h - s)));
+  const w1 = sub(b.v, scale(g, h));
+  const fall = scale(g, 0.5 * h * h);
+  if (hits === 0) {
+    const x1 = nearestImage(b.x, add(a.x, add(scale(a.v, h), fall)), period);
+    const x = wrap(mix(forward, backward(x1), s / h), period);
+    return { x, v2: mixed(ahead, behind, s / h) };
+  }
+  const kick = sub(a.v, w1);
+  const strength = dot(kick, kick);
+  let crossing = 0.5 * h;
+  let x1 = b.x;
+  // The image depends on the crossing and the crossing on the image: the second round settles it.
+  for (let round = 0; round < 2; round++) {
+    const end = add(add(scale(a.v, crossing), scale(w1, h - crossing)), fall);
+    x1 = nearestImage(b.x, add(a.x, end), period);
+    const d = sub(sub(x1, fall), add(a.x, scale(w1, h)));
+    if (strength > 0) crossing = Math.min(h, Math.max(0, dot(d, kick) / strength));
+  }
+  return s < crossing
+    ? { x: wrap(forward, period), v2: dot(ahead, ahead) }
+    : { x: wrap(backward(x1), period), v2: dot(behind, behind) };
+}
+
+/** @param {Vec3} v @param {Vec3} w @param {number} s energies are mixed, not velocities */
+const mixed = (v, w, s) => (1 - s) * dot(v, v) + s * dot(w, w);
+
+/**
+ * @param {Moment} a @param {Moment} b @param {number} s @param {number} h @param {Vec3} period
+ */
+function blend(a, b, s, h, period) {
+  const end = add(a.x, scale(add(a.v, b.v), 0.5 * h));
+  const x1 = nearestImage(b.x, end, period);
+  return { x: wrap(mix(a.x, x1, s / h), period), v2: mixed(a.v, b.v, s / h) };
+}

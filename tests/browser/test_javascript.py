@@ -1,0 +1,81 @@
+"""The page's modules in node, and both sides of the protocol against one another."""
+
+import json
+import os
+import shutil
+import subprocess
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from carom.state import State
+from carom.view.protocol import Meters, decode_command, encode_frame, encode_scene
+
+HERE = Path(__file__).parent / "js"
+
+
+def node(name, **environment):
+    """Run one test file; its own report is the message if it fails."""
+    program = shutil.which("node")
+    assert program, "node is needed: apt install nodejs"
+    done = subprocess.run(
+        [program, "--test", "--test-reporter=spec", str(HERE / name)],
+        env={
+            **os.environ,
+            "CAROM_STATIC": str(resources.files("carom.view") / "static"),
+            **environment,
+        },
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("name", ["interpolation", "timeline", "page"])
+def test_modules(name):
+    node(f"{name}.test.mjs")
+
+
+def test_protocol_on_both_sides(tmp_path):
+    state = State.empty(2)
+    state.position[:] = [(1, 2, 3), (-4, 5.5, 6)]
+    state.velocity[:] = [(0.25, 0, -1), (0, 0, 0)]
+    state.radius[:] = (0.5, 2)
+    state.color[:] = (0x123456, 0xFEDCBA)
+    state.species[:] = (0, 2**32 - 1)
+    state.collision_count[:] = (129, 7)
+    state.fixed[1] = True
+    state.time, state.collisions, state.wall_collisions = 0.1, 2**50 + 1, 3
+    meters = Meters(
+        clock=12.5, gravity=(0.0, 0.5, -9.81), kinetic=1.0, potential=2.0, dissipated=-3.0,
+        drift=1e-16, speed=0.125, reached=0.1, epoch=4, scene=6, playing=False, failed=True,
+    )  # fmt: skip
+    about = {"title": "Σ “quoted”", "walls": [], "pace": 60}
+    (tmp_path / "frame.bin").write_bytes(encode_frame(state, meters))
+    (tmp_path / "scene.bin").write_bytes(encode_scene(state, 6, about))
+    expected = {
+        "frame": {
+            "n": 2, "epoch": 4, "scene": 6, "playing": False, "failed": True,
+            "t": 0.1, "clock": 12.5, "gravity": [0.0, 0.5, -9.81], "kinetic": 1.0,
+            "potential": 2.0, "dissipated": -3.0, "drift": 1e-16, "collisions": 2**50 + 1,
+            "wallCollisions": 3, "speed": 0.125, "reached": 0.1,
+            "position": np.float32(state.position).ravel().tolist(),
+            "velocity": np.float32(state.velocity).ravel().tolist(),
+            "counts": [1, 128 + 7],
+        },
+        "scene": {
+            "about": about, "radius": [0.5, 2.0], "color": [0x123456, 0xFEDCBA],
+            "species": [0, 2**32 - 1],
+        },
+    }  # fmt: skip
+    (tmp_path / "expected.json").write_text(json.dumps(expected))
+    node("protocol.test.mjs", CAROM_EXCHANGE=str(tmp_path))
+    said = [decode_command(text) for text in json.loads((tmp_path / "said.json").read_text())]
+    ops = [command.op for command in said]
+    assert ops == ["hello", "credit", "play", "pause", "restart", "speed"]
+    assert (said[0].token, said[0].version) == ("token", 1)
+    assert (said[1].count, said[5].value) == (2, 0.5)

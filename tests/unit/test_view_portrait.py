@@ -1,0 +1,64 @@
+"""What a page is told about a scene."""
+
+import json
+
+import numpy as np
+import pytest
+
+import carom
+from carom import scenes
+from carom.view.portrait import portrait
+
+
+def told(sim):
+    return json.loads(json.dumps(portrait(sim, sim.state), allow_nan=False))
+
+
+def test_the_papers_phases_keep_the_papers_scale():
+    for phase in (scenes.phase_0, scenes.phase_1, scenes.phase_2, scenes.phase_3, scenes.phase_4):
+        about = told(carom.Simulation(phase()))
+        assert about["full_energy"] == 500
+        assert about["wire"] is True
+        assert about["color"] == "energy"
+        assert about["pace"] == 60
+
+
+def test_walls_as_the_engine_counts_them():
+    about = told(carom.Simulation(scenes.phase_1()))
+    assert [wall["offset"] for wall in about["walls"]] == [-250] * 6
+    assert np.array(about["walls"][1]["normal"]) == pytest.approx([-1, 0, 0])
+    assert told(carom.Simulation(scenes.phase_0()))["walls"] == [
+        {"kind": 1, "normal": [0, 0, 0], "offset": 500}
+    ]
+
+
+def test_scales_follow_the_units():
+    sim = carom.Simulation()
+    sim.add((0, 0, 0), velocity=(3, 0, 0), mass=2)
+    sim.add((4, 0, 0), fixed=True)
+    about = told(sim)
+    assert about["full_energy"] == 20  # 3 times 9, rounded to 1, 2 or 5
+    assert about["full_speed"] == 5  # 2 times 3
+    assert about["color"] == "own"
+    assert (about["low"], about["high"]) == ([-0.5, -0.5, -0.5], [4.5, 0.5, 0.5])
+
+
+def test_what_is_at_rest_is_measured_by_its_fall():
+    sim = carom.Simulation(gravity=(0, 0, -10))
+    sim.add((0, 0, 0))
+    sim.add((0, 0, 5))
+    assert told(sim)["full_energy"] == 50
+
+
+def test_nothing_that_moves_needs_no_scale():
+    sim = carom.Simulation()
+    sim.add((0, 0, 0), fixed=True)
+    assert told(sim)["full_energy"] == 1
+
+
+def test_camera_of_the_scene():
+    camera = carom.scene.Camera((1, 2, 3), (0, 0, 1))
+    scene = carom.Scene(carom.Spheres.of((0, 0, 0)), camera=camera, title="t")
+    about = told(carom.Simulation(scene))
+    assert about["camera"] == {"position": [1, 2, 3], "target": [0, 0, 1]}
+    assert about["title"] == "t"
