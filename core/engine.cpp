@@ -81,6 +81,15 @@ Engine::Motion Engine::motion(int i, double t) const {
     return {s.x + (s.v + world_.gravity * (0.5 * dt)) * dt, s.v + world_.gravity * dt};
 }
 
+// Is this the first physical event that belongs to a new epoch? After a silent epoch it does not:
+// it is best solved from the anchors as they are.
+bool Engine::epoch_over(const Entry& entry) const {
+    const Event& event = events_[size_t(entry.id)];
+    if (epoch_events_ == 0 || (event.t < clock_.epoch && !busy_epoch())) return false;
+    if (event.t != entry.t || event.partner <= kEscape) return false;
+    return event.partner < 0 || events_[size_t(event.partner)].count == event.partner_count;
+}
+
 Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
     const PlainArithmetic plain;
     if (collapse_.i != kNone) return Stop::collapse;
@@ -103,10 +112,7 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
         }
         const Entry entry = *top;
         const Event& event = events_[size_t(entry.id)];
-        if (event.t == entry.t && event.partner > kEscape && event.t >= clock_.epoch &&
-            epoch_events_ > 0 &&
-            (event.partner < 0 || events_[size_t(event.partner)].count == event.partner_count)) {
-            // The first physical event beyond this epoch is due.
+        if (epoch_over(entry)) {
             begin_epoch(entry.t);
             limit = clock_.offset(until);
             continue;

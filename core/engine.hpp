@@ -108,6 +108,8 @@ private:
 
     // engine.cpp
     Motion motion(int i, double t) const;
+    bool epoch_over(const Entry& entry) const;
+    bool busy_epoch() const { return epoch_events_ >= 64 * int64_t(size()); }
     Vec3 acceleration(int i) const { return falls_[size_t(i)] ? world_.gravity : Vec3{}; }
     Vec3 whole_boxes(const Vec3& x) const { return nearest(x * inverse_period_); }
 

@@ -127,9 +127,12 @@ void Engine::predict_all() {
 
 // Flies every sphere to the start of the epoch in which offset t falls, anchors it there and
 // predicts everything anew. This is the one change of stored state that is not a collision; it
-// happens when a physical event beyond the epoch is due, so nobody's bookkeeping moves it. Not
-// after a silent epoch: its first event is best solved from the anchors as they are.
+// happens when a physical event beyond the epoch is due, or one too many within it, so nobody's
+// bookkeeping moves it.
 void Engine::begin_epoch(double t) {
+    // A gas that cools or heats, or two balls in a squeeze, keep their collisions per epoch: the
+    // precision of a time is that of the epoch's length.
+    if (busy_epoch()) clock_.epoch *= 0.5;
     const double step = clock_.advance(t);
     for (size_t i = 0; i < size(); ++i) {
         Sphere& s = spheres_[i];
@@ -148,9 +151,7 @@ void Engine::begin_epoch(double t) {
     user_ -= step;
     log_shift_ -= step;
     now_ = std::max(0.0, now_ - step);
-    // A gas that cools or heats keeps its number of collisions per epoch.
     if (epoch_events_ < 4 * int64_t(size())) clock_.epoch *= 2;
-    if (epoch_events_ > 64 * int64_t(size())) clock_.epoch *= 0.5;
     epoch_events_ = 0;
     predict_all();
 }

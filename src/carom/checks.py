@@ -2,6 +2,7 @@
 
 import difflib
 import math
+import os
 from collections.abc import Iterable
 from typing import Any, SupportsFloat
 
@@ -13,6 +14,9 @@ Triple = tuple[float, float, float]
 
 #: Beyond this the products of four numbers in the contact times leave the range of a float.
 LARGEST = 1e60
+
+#: What placing and running a sphere takes at its peak (788 measured at 10^6 spheres).
+BYTES_PER_SPHERE = 800
 
 
 def number(
@@ -57,6 +61,30 @@ def number(
         msg = f"{name} is {x:.15g}; it must be {_limits(above, at_least, at_most)}"
         raise InputError(msg)
     return x
+
+
+def count(name: str, value: Any, *, at_least: int = 1) -> int:
+    """`value` as a number of spheres that this machine has the memory for.
+
+    Raises
+    ------
+    InputError
+        If it is no number, too small, or too large for the memory or the engine's 32-bit indices.
+    """
+    n = int(number(name, value, at_least=at_least))
+    most = 2**31 - 2
+    try:
+        memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+        most = min(most, memory // BYTES_PER_SPHERE)
+    except (AttributeError, OSError, ValueError):
+        pass  # a system that does not tell: only the indices limit
+    if n > most:
+        msg = (
+            f"{name} is {n:,}, but this machine has room for about {most:,} spheres "
+            f"({BYTES_PER_SPHERE} bytes each); ask for fewer"
+        )
+        raise InputError(msg)
+    return n
 
 
 def _limits(above: float, at_least: float, at_most: float) -> str:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from carom.checks import number
+from carom.checks import count, number
 from carom.color import SPECIES
 from carom.place import random_positions
 from carom.random_numbers import Random
@@ -35,7 +35,7 @@ def bounce(n: int = 25, restitution: float = 0.8, gravity: float = 9.81, seed: i
     seed : int
         Of the random sizes, places and velocities.
     """
-    number("n", n, at_least=1)
+    count("n", n, at_least=1)
     number("gravity", gravity, at_least=0)
     random = Random(seed)
     radius = random.uniform(n, low=0.3, high=0.7)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from carom.checks import number
+from carom.checks import count
 from carom.place import cube_edge, fcc, fluid_cells, maxwell
 from carom.random_numbers import Random
 from carom.scene import Scene, Spheres
@@ -30,7 +30,7 @@ def fluid(
     seed : int
         Of the empty sites and the velocities.
     """
-    number("n", n, at_least=2)
+    count("n", n, at_least=2)
     cells = fluid_cells(n, packing_fraction)
     side = cube_edge(n, packing_fraction)
     random = Random(seed)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from carom.checks import number
+from carom.checks import count, number
 from carom.place import cube_edge, random_positions
 from carom.random_numbers import Random
 from carom.scene import Scene, Spheres
@@ -25,7 +25,7 @@ def gas(n: int = 500, packing_fraction: float = 0.05, speed: float = 1.0, seed: 
     seed : int
         Of the random places and directions.
     """
-    number("n", n, at_least=1)
+    count("n", n, at_least=1)
     number("packing_fraction", packing_fraction, above=0, at_most=0.74)
     number("speed", speed, at_least=0)
     random = Random(seed)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from carom.checks import number
+from carom.checks import count, number
 from carom.place import cube_root, maxwell, random_positions
 from carom.random_numbers import Random
 from carom.scene import Scene, Spheres
@@ -37,7 +37,7 @@ def giant(
     seed : int
         Of the random places and velocities.
     """
-    number("n", n, at_least=2)
+    count("n", n, at_least=2)
     number("radius_ratio", radius_ratio, at_least=1)
     number("mass_ratio", mass_ratio, above=0)
     number("packing_fraction", packing_fraction, above=0, at_most=0.74)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from carom.checks import number
+from carom.checks import count, number
 from carom.color import SPECIES
 from carom.scene import Scene, Spheres
 from carom.scenes.registry import scene
@@ -22,7 +22,7 @@ def newton_cradle(n: int = 5, moving: int = 1) -> Scene:
     moving : int
         How many of them come in, side by side.
     """
-    number("n", n, at_least=2)
+    count("n", n, at_least=2)
     number("moving", moving, at_least=1, at_most=n - 1)
     x = np.arange(n) - (n - 1) / 2
     x[:moving] -= 3.0

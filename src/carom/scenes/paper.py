@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from carom.checks import number
 from carom.color import hsb
 from carom.random_numbers import Random
 from carom.scene import Spheres
@@ -20,11 +19,6 @@ BALLS = 12
 PACE = 60.0
 #: Velocities are even between minus and plus these, pixels per tick.
 FASTEST = np.array([10.0, 10.0, 20.0])
-
-
-def count(n: int) -> int:
-    """Check a number of balls."""
-    return int(number("n", n, at_least=1))
 
 
 def balls(random: Random, position: Any, radius: Any = RADIUS, mass: Any = 1.0) -> Spheres:

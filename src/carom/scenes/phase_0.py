@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from carom.checks import count
 from carom.random_numbers import Random
 from carom.scene import Scene
-from carom.scenes.paper import BALLS, PACE, WIDTH, balls, count
+from carom.scenes.paper import BALLS, PACE, WIDTH, balls
 from carom.scenes.registry import scene
 from carom.walls import Sphere
 
@@ -25,7 +26,7 @@ def phase_0(n: int = BALLS, width: float = WIDTH, seed: int = 1) -> Scene:
         Of the random velocities and colours.
     """
     return Scene(
-        balls(Random(seed), np.zeros((count(n), 3))),
+        balls(Random(seed), np.zeros((count("n", n), 3))),
         walls=(Sphere(width, reflection="bounce-back"),),
         collide=False,
         seed=seed,

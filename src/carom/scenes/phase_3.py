@@ -2,10 +2,11 @@
 
 import numpy as np
 
+from carom.checks import count
 from carom.place import random_positions
 from carom.random_numbers import Random
 from carom.scene import Scene
-from carom.scenes.paper import BALLS, PACE, RADIUS, WIDTH, balls, count
+from carom.scenes.paper import BALLS, PACE, RADIUS, WIDTH, balls
 from carom.scenes.registry import scene
 from carom.walls import Box
 
@@ -24,7 +25,7 @@ def phase_3(n: int = BALLS, width: float = WIDTH, seed: int = 1) -> Scene:
         Of the random places, velocities and colours.
     """
     random = Random(seed)
-    places = random_positions(random, np.full(count(n), RADIUS), (width, width, width))
+    places = random_positions(random, np.full(count("n", n), RADIUS), (width, width, width))
     return Scene(
         balls(random, places),
         walls=(Box(width, width, width),),

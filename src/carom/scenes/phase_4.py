@@ -1,9 +1,10 @@
 """Phase 4 of the paper."""
 
+from carom.checks import count
 from carom.place import random_positions
 from carom.random_numbers import Random, total
 from carom.scene import Scene
-from carom.scenes.paper import BALLS, PACE, WIDTH, balls, count
+from carom.scenes.paper import BALLS, PACE, WIDTH, balls
 from carom.scenes.registry import scene
 from carom.walls import Box
 
@@ -26,7 +27,7 @@ def phase_4(n: int = BALLS, width: float = WIDTH, seed: int = 1) -> Scene:
         Of the random sizes, places, velocities and colours.
     """
     random = Random(seed)
-    radius = random.uniform(count(n), low=SMALLEST, high=LARGEST)
+    radius = random.uniform(count("n", n), low=SMALLEST, high=LARGEST)
     cubed = radius * radius * radius
     places = random_positions(random, radius, (width, width, width))
     return Scene(

@@ -31,8 +31,8 @@ class LiveView:
     Attributes
     ----------
     url : str
-        Address of the page, once it is open. The part after ``#`` is a password of this run: browsers never
-        send that part over the network, and the page removes it from the address bar.
+        Address of the page, once it is open. The part after ``#`` is a password of this run:
+        browsers send it to nobody, and the page removes it from the address bar.
 
     Raises
     ------

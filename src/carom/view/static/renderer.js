@@ -243,14 +243,15 @@ export class Renderer {
     const program = this.programs.faces;
     for (const face of this.walls.faces) {
       const facing = dot(face.normal, sub(camera.eye, face.center));
-      if (facing <= 0 && face.fade === 0) continue;
+      const endless = face.fade > 0;
+      if (facing <= 0 && !endless) continue;
       const floor = dot(face.normal, camera.up) > 0.9;
       program.use();
       program.set({
         ...common,
         uColor: theme.line,
-        uFill: floor ? 0.06 : 0.025,
-        uGridLine: floor ? 0.1 : 0.05,
+        uFill: endless ? 0.1 : floor ? 0.06 : 0.025,
+        uGridLine: endless ? 0.24 : floor ? 0.1 : 0.05,
         uFade: face.fade,
       });
       this.#stream(program, face.corners.flatMap((corner, k) => [...corner, ...face.grid[k]]), 0, [

@@ -72,7 +72,7 @@ vec3 lit(vec3 base, vec3 n, vec3 toEye, float away) {
   float shine64 = shine8 * shine8; shine64 *= shine64; shine64 *= shine64;
   float rim = 1.0 - dot(n, toEye); rim *= rim * rim;
   // Squares and roots stand for the curve between colours and amounts of light.
-  vec3 light = base * base * (around + 0.86 * facing * facing)
+  vec3 light = base * base * (around + facing * facing)
     + vec3(0.30 * shine64 + 0.035 * shine8) + uSky * (0.22 * rim);
   light = light / (1.0 + 0.12 * light);
   return mix(sqrt(light), uFog, 0.45 * clamp((away - uFogRange.x) * uFogRange.y, 0.0, 1.0));
