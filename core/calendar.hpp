@@ -1,9 +1,9 @@
 // The event queue: a calendar of buckets, each one cache line of sphere numbers.
 //
 // Every sphere has one pending event, at `time[i]`. An entry is never deleted: it is dead when its
-// sphere's event has moved to another bucket, or when the time it was taken out with is no longer
-// the sphere's. The bucket in hand is a small heap, ordered by (time, i, j), so that simultaneous
-// events come in an order that nobody's bookkeeping can change.
+// sphere's event has moved to another bucket, or is no longer the one the entry was made for. The
+// bucket in hand is a small heap, ordered by (time, i, j), so that simultaneous events come in an
+// order that nobody's bookkeeping can change.
 #pragma once
 
 #include <algorithm>
@@ -83,6 +83,14 @@ public:
         return heap_.front().t <= limit ? &heap_.front() : nullptr;
     }
 
+    // Is this still what its sphere does next? A sphere may have got another event since, even one
+    // of the same time: that has an entry, and a place in the order, of its own.
+    static bool live(const Entry& e, const Event& event) {
+        if (event.t != e.t) return false;
+        const Entry now = entry(e.id, event);
+        return now.a == e.a && now.b == e.b;
+    }
+
     void pop() {
         std::pop_heap(heap_.begin(), heap_.end(), later);
         heap_.pop_back();
@@ -104,9 +112,12 @@ private:
         return k < 4e18 ? int64_t(k) : int64_t(4e18);
     }
 
+    // Bookkeeping comes before collisions of the same time: whatever is due then must be known
+    // before the first of them happens.
     static Entry entry(int i, const Event& e) {
-        return e.partner >= 0 ? Entry{e.t, std::min(i, e.partner), std::max(i, e.partner), i}
-                              : Entry{e.t, i, e.partner, i};
+        if (e.partner == kEscape) return {e.t, -1, i, i};
+        if (e.partner < 0) return {e.t, i, e.partner, i};
+        return {e.t, std::min(i, e.partner), std::max(i, e.partner), i};
     }
 
     void push(int64_t slot, int i) {

@@ -52,6 +52,7 @@ Engine::Engine(const std::vector<StartSphere>& start, double time, const World& 
     bodies_.resize(n);
     events_.resize(n);
     falls_.resize(n);
+    fresh_.resize(n);
     if (inelastic) watches_.resize(n);
     if (world_.contact_time > 0) last_touch_.assign(n, -kNever);
     for (size_t i = 0; i < n; ++i) {
@@ -86,7 +87,7 @@ Engine::Motion Engine::motion(int i, double t) const {
 bool Engine::epoch_over(const Entry& entry) const {
     const Event& event = events_[size_t(entry.id)];
     if (epoch_events_ == 0 || (event.t < clock_.epoch && !busy_epoch())) return false;
-    if (event.t != entry.t || event.partner <= kEscape) return false;
+    if (!Calendar::live(entry, event) || event.partner <= kEscape) return false;
     return event.partner < 0 || events_[size_t(event.partner)].count == event.partner_count;
 }
 
@@ -95,6 +96,7 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
     if (collapse_.i != kNone) return Stop::collapse;
     if (max_collisions <= 0 || max_events <= 0) return Stop::count;
     const double deadline = seconds() + slice_;
+    const size_t full = log_.size() + kLogCapacity;
     const int64_t last_collision = collisions_ + max_collisions;
     const int64_t last_event = collisions_ + wall_collisions_ + max_events;
     double limit = clock_.offset(until);
@@ -118,7 +120,7 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
             continue;
         }
         calendar_.pop();
-        if (event.t != entry.t) continue;  // the sphere has got another event since
+        if (!Calendar::live(entry, event)) continue;
         now_ = entry.t;
         if (event.partner == kEscape) {
             escape(entry.id);
@@ -130,11 +132,11 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
         }
         execute(entry.id);
         if (collapse_.i == kNone && collisions_ < last_collision &&
-            collisions_ + wall_collisions_ < last_event && log_.size() < kLogCapacity)
+            collisions_ + wall_collisions_ < last_event && log_.size() < full)
             continue;
         user_ = now_;
         if (collapse_.i != kNone) return Stop::collapse;
-        return log_.size() >= kLogCapacity && collisions_ < last_collision &&
+        return log_.size() >= full && collisions_ < last_collision &&
                        collisions_ + wall_collisions_ < last_event
                    ? Stop::slice
                    : Stop::count;
@@ -182,8 +184,9 @@ std::vector<Record> Engine::take_log(double& start) {
 
 size_t Engine::bytes() const {
     const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-    return of(spheres_) + of(bodies_) + of(events_) + of(falls_) + of(last_touch_) + of(watches_) +
-           of(shells_) + of(mark_) + rows_.bytes() + cells_.bytes() + calendar_.bytes();
+    return of(spheres_) + of(bodies_) + of(events_) + of(falls_) + of(fresh_) + of(last_touch_) +
+           of(watches_) + of(shells_) + of(mark_) + rows_.bytes() + cells_.bytes() +
+           calendar_.bytes();
 }
 
 void Engine::check() const {

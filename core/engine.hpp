@@ -109,7 +109,9 @@ private:
     // engine.cpp
     Motion motion(int i, double t) const;
     bool epoch_over(const Entry& entry) const;
-    bool busy_epoch() const { return epoch_events_ >= 64 * int64_t(size()); }
+    bool busy_epoch() const {
+        return epoch_events_ >= 64 * int64_t(size()) && clock_.epoch > clock_.shortest;
+    }
     Vec3 acceleration(int i) const { return falls_[size_t(i)] ? world_.gravity : Vec3{}; }
     Vec3 whole_boxes(const Vec3& x) const { return nearest(x * inverse_period_); }
 
@@ -155,6 +157,7 @@ private:
     std::vector<Body> bodies_;
     std::vector<Event> events_;
     std::vector<uint8_t> falls_;      // gravity acts on it: neither fixed nor resting
+    std::vector<uint8_t> fresh_;      // its anchor is its last event, not the start of an epoch
     std::vector<double> last_touch_;  // TC model only
     std::vector<Watch> watches_;      // inelastic runs only
 

@@ -130,6 +130,7 @@ void Engine::anchor(int32_t i, const Vec3& x, const Vec3& v, double t) {
     s.v = v;
     s.t = t;
     wrap(i);
+    fresh_[size_t(i)] = 1;
     ++events_[size_t(i)].count;
     if (!last_touch_.empty()) last_touch_[size_t(i)] = t;
 }

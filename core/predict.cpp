@@ -59,7 +59,8 @@ void Engine::consider_pair(int i, int32_t j, const Vec3& r, const Vec3& v, const
     if (free) {
         if (just_met) return;
     } else {
-        wait = Approach(r, v, a, sigma, 1).first(just_met);
+        const bool here = fresh_[size_t(i)] && fresh_[size_t(j)];  // still where they met
+        wait = Approach(r, v, a, sigma, 1).first(just_met && here);
         if (wait == kNever) return;
     }
     Event e = best;
@@ -144,8 +145,10 @@ double Engine::escape_time(int i) const {
     const Motion at = motion(i, now_);
     Vec3 d = at.x - shells_[size_t(i)].centre;
     d -= nearest(d * inverse_period_) * world_.period;
-    const double margin = shells_[size_t(i)].reach - s.r;
+    double margin = shells_[size_t(i)].reach - s.r;
     if (margin >= kEndless * margin_) return kNever;
+    // A hair early: two that touch just as they leave touching shells must know each other by then.
+    margin *= 1 - 1e-9;
     const double v2 = norm2(at.v), room = margin * margin - norm2(d);
     if (falls_[size_t(i)] && gravity_) {
         const double left = margin - norm(d);
@@ -177,7 +180,7 @@ void Engine::find_event(int i) {
         else
             images ? predict_pairs<false, true>(i, best) : predict_pairs<false, false>(i, best);
         const double leaves = escape_time(i);
-        if (leaves < best.t) {
+        if (leaves <= best.t && leaves < kNever) {  // of two at one time, this one first
             best.t = leaves;
             best.partner = kEscape;
         }

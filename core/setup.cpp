@@ -145,6 +145,7 @@ void Engine::begin_epoch(double t) {
         s.v = at.v;
         s.t = 0;
         wrap(int32_t(i));
+        fresh_[i] = 0;
     }
     for (double& touch : last_touch_) touch -= step;
     for (Watch& w : watches_) w.start -= step;
@@ -184,11 +185,9 @@ public:
     void many(std::vector<T>& v) {
         take(v.data(), v.size() * sizeof(T));
     }
-    bool done() const { return at_ == bytes_.size(); }
 
 private:
     void take(void* to, size_t n) {
-        if (bytes_.size() - at_ < n) throw std::invalid_argument("the checkpoint is cut short");
         std::memcpy(to, bytes_.data() + at_, n);
         at_ += n;
     }
@@ -215,6 +214,7 @@ std::string Engine::checkpoint() const {
     w.many(spheres_);
     w.many(bodies_);
     w.many(falls_);
+    w.many(fresh_);
     w.many(last_touch_);
     w.many(watches_);
     for (const Event& e : events_) w.one(e.count);
@@ -222,6 +222,8 @@ std::string Engine::checkpoint() const {
 }
 
 void Engine::restore(const std::string& bytes) {
+    if (bytes.size() != checkpoint().size())
+        throw std::invalid_argument("the checkpoint is of another scene, or damaged");
     Reader r(bytes);
     uint32_t version = 0;
     uint64_t n = 0;
@@ -242,10 +244,10 @@ void Engine::restore(const std::string& bytes) {
     r.many(spheres_);
     r.many(bodies_);
     r.many(falls_);
+    r.many(fresh_);
     r.many(last_touch_);
     r.many(watches_);
     for (Event& e : events_) r.one(e.count);
-    if (!r.done()) throw std::invalid_argument("the checkpoint is too long");
     log_.clear();
     log_start_ = time();
     log_shift_ = user_;
