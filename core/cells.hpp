@@ -26,13 +26,14 @@ struct Shell {
 
 class Cells {
 public:
-    // `width`: of the lowest level's cells. `period`: 0 on axes that are not periodic. `count` is
-    // how many shells to expect.
-    void reset(double width, const Vec3& period, size_t count) {
+    // `width`: of the lowest level's cells. `period`: 0 on axes that are not periodic. `extent`: of
+    // the spheres at the start, along each axis.
+    void reset(double width, const Vec3& period, const Vec3& extent, size_t count) {
         width_ = width;
         period_ = period;
-        inverse_period_ = inverse(period);
+        extent_ = extent;
         count_ = count;
+        inverse_period_ = inverse(period);
         levels_.clear();
         lines_.clear();
         free_ = -1;
@@ -66,7 +67,6 @@ public:
     size_t bytes() const { return lines_.capacity() * sizeof(Line); }
 
 private:
-    static constexpr double kPerCell = 2.5;  // shells, at the usual margin
     static constexpr int kSlots = 7;
     struct alignas(64) Line {
         int32_t n = 0;
@@ -94,26 +94,34 @@ private:
         return k;
     }
 
+    // As many cells as the spheres' extent holds, but no more than some for each shell expected:
+    // an axis that would have more is folded, on an open axis a slot serving several places, on a
+    // periodic one with wider cells.
     Level make_level(int k) {
         const double w = std::ldexp(width_, k);
-        const double want = std::cbrt(double(count_) / std::ldexp(kPerCell, std::min(3 * k, 60)));
-        const auto open = int64_t(std::clamp(std::ceil(want), 4.0, 1024.0));
-        Level level;
+        double n[3] = {cells_along(extent_.x, w), cells_along(extent_.y, w),
+                       cells_along(extent_.z, w)};
+        const double most = std::max(64.0, std::ldexp(double(count_), -std::min(3 * k, 60)));
+        while (n[0] * n[1] * n[2] > most) {
+            double& longest = *std::max_element(n, n + 3);
+            longest = std::max(1.0, std::floor(longest / 2));
+        }
         const double p[3] = {period_.x, period_.y, period_.z};
         double inverse_width[3];
+        Level level;
         for (int a = 0; a < 3; ++a) {
-            level.n[a] = open;
-            inverse_width[a] = 1 / w;
-            if (p[a] > 0) {  // whole cells per period, never narrower than w
-                const double whole = std::floor(p[a] / w);
-                level.n[a] = int64_t(std::clamp(whole, 1.0, std::max(4.0, 4.0 * double(open))));
-                inverse_width[a] = double(level.n[a]) / p[a];
-            }
+            if (p[a] > 0) n[a] = std::min(n[a], std::max(1.0, std::floor(p[a] / w)));
+            level.n[a] = int64_t(n[a]);
+            inverse_width[a] = p[a] > 0 ? n[a] / p[a] : 1 / w;
         }
         level.inverse_width = {inverse_width[0], inverse_width[1], inverse_width[2]};
         level.first = int64_t(lines_.size());
         lines_.resize(lines_.size() + size_t(level.n[0] * level.n[1] * level.n[2]));
         return level;
+    }
+    // At least four: with fewer, every search would visit the same cells again and again.
+    static double cells_along(double extent, double w) {
+        return std::clamp(std::ceil(extent / w), 4.0, 1e7);
     }
 
     // Cell coordinate along an axis. Clamped so that no distance overflows an integer; clamping
@@ -268,7 +276,7 @@ private:
     }
 
     double width_ = 1;
-    Vec3 period_, inverse_period_;
+    Vec3 period_, inverse_period_, extent_;
     size_t count_ = 0;
     std::vector<Level> levels_;
     std::vector<Line> lines_;

@@ -109,7 +109,8 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
         const Entry* top = calendar_.top(events_, limit);
         if (top == nullptr) {
             if (until == kNever) return Stop::idle;
-            user_ = std::max(user_, limit);
+            user_ = asked_ = std::max(user_, limit);
+            asked_time_ = until;
             return Stop::time;
         }
         const Entry entry = *top;

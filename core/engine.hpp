@@ -74,7 +74,7 @@ public:
     Stop advance(double until, int64_t max_collisions, int64_t max_events);
 
     size_t size() const { return spheres_.size(); }
-    double time() const { return clock_.time(user_); }
+    double time() const { return user_ == asked_ ? asked_time_ : clock_.time(user_); }
     int64_t collisions() const { return collisions_; }
     int64_t wall_collisions() const { return wall_collisions_; }
     double dissipated() const { return dissipated_.value(); }
@@ -102,6 +102,7 @@ private:
     void choose_shells(const Tuning& tuning);
     void choose_epoch(double time);
     void build_shells();
+    bool build_shells_at(double margin);
     void predict_all();
     void begin_epoch(double t);
     void settle(int i);
@@ -128,6 +129,9 @@ private:
     double escape_time(int i) const;
     void escape(int i);
     bool crowded(int i) const;
+    double least_margin(int i) const {
+        return spheres_[size_t(i)].r > giant_ ? margin_ : least_margin_;
+    }
     void make_shell(int i);
 
     // execute.cpp
@@ -149,8 +153,9 @@ private:
     double half_period_ = kNever;  // of the shortest periodic axis
 
     Clock clock_;
-    double now_ = 0;   // offset of the event in hand
-    double user_ = 0;  // offset of the time the outside sees
+    double now_ = 0;                          // offset of the event in hand
+    double user_ = 0;                         // offset of the time the outside sees
+    double asked_ = kNever, asked_time_ = 0;  // offset of the last `until`, and it to the bit
     int64_t epoch_events_ = 0;
 
     std::vector<Sphere> spheres_;
@@ -162,10 +167,12 @@ private:
     std::vector<Watch> watches_;      // inelastic runs only
 
     std::vector<Shell> shells_;
-    double margin_ = 0;         // that most shells have
-    double widest_margin_ = 0;  // that any shell has had
-    double most_margin_ = 0;    // that a lonely sphere's shell may grow to
-    double cell_ = 0;           // width of the smallest cells
+    double margin_ = 0;              // that most shells have
+    double widest_margin_ = 0;       // that any shell has had
+    double least_margin_ = 0;        // that a crowded one may shrink to
+    double common_ = 0, giant_ = 0;  // radius the cells are made for; above which one is a giant
+    double most_margin_ = 0;         // that a lonely sphere's shell may grow to
+    double cell_ = 0;                // width of the smallest cells
     Rows rows_;
     Cells cells_;
     Calendar calendar_;

@@ -120,7 +120,7 @@ void Engine::hit_wall(int32_t i, int k, double t) {
     } else {
         wake(i, impulse, t);
     }
-    if (e < 1 && !lasting) watch(i, wall_code(k), t, -speed);
+    if (e < 1 && !lasting) watch(i, wall_code(k), t, norm(at.v));
 }
 
 // The sphere leaves its last event from x with velocity v.
@@ -160,7 +160,8 @@ bool Engine::recent(int32_t i, double t) const {
 void Engine::watch(int32_t i, int32_t j, double t, double speed) {
     for (const int32_t k : {i, j}) {
         if (k < 0 || bodies_[size_t(k)].fixed()) continue;
-        if (watches_[size_t(k)].collapsed(t, speed, spheres_[size_t(k)].r) && collapse_.i == kNone)
+        if (watches_[size_t(k)].collapsed(t, speed, spheres_[size_t(k)].r, size()) &&
+            collapse_.i == kNone)
             collapse_ = {clock_.time(t), i, j};
     }
 }

@@ -204,7 +204,7 @@ void Engine::escape(int i) {
 
 bool Engine::crowded(int i) const {
     return rows_.size(i) > kCrowded &&
-           shells_[size_t(i)].reach - spheres_[size_t(i)].r > 1.01 * margin_;
+           shells_[size_t(i)].reach - spheres_[size_t(i)].r > 1.01 * least_margin(i);
 }
 
 // A shell around where the sphere is now, and with it its row of neighbours. A sphere that flies
@@ -214,7 +214,7 @@ void Engine::make_shell(int i) {
     const double r = spheres_[size_t(i)].r, margin = shell.reach - r;
     double wish = margin;
     if (crowded(i))
-        wish = std::max(0.5 * margin, margin_);
+        wish = std::max(0.5 * margin, least_margin(i));
     else if (rows_.size(i) * 4 < kLonely && margin < most_margin_)
         wish = std::min(2 * margin, most_margin_);
 

@@ -2,6 +2,10 @@
 // that no rule can break the conservation of momentum.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
 #include "exact.hpp"
 
 namespace carom {
@@ -36,19 +40,26 @@ inline double rebound_floor(double press, double rise) {
     return press > 0 ? std::sqrt(2 * press * rise) : 0;
 }
 
-// Watches one sphere for inelastic collapse: many inelastic collisions while it goes nowhere.
+// Watches one sphere for inelastic collapse: many inelastic collisions while it goes nowhere. A
+// blow that runs through a row of touching spheres is also many, but all in one moment, and it
+// ends: the more spheres, the later.
 struct Watch {
     double start = 0, fastest = 0;
-    int count = 0;
+    int64_t count = 0;
 
-    static constexpr int kLimit = 20;        // collisions ...
-    static constexpr double kStill = 1e-12;  // ... within this many radii of motion
+    static constexpr double kStill = 1e-12;   // radii of motion that are nowhere,
+    static constexpr double kMoment = 1e-15;  // and that are one moment
+    static constexpr int64_t kLimit = 14;
 
-    bool collapsed(double t, double speed, double radius) {
+    bool collapsed(double t, double speed, double radius, size_t spheres) {
         if (speed > fastest) fastest = speed;
-        if (count > 0 && (t - start) * fastest < kStill * radius) return ++count >= kLimit;
-        start = t, fastest = speed, count = 1;
-        return false;
+        const double moved = (t - start) * fastest;
+        if (count == 0 || moved >= kStill * radius) {
+            start = t, fastest = speed, count = 1;
+            return false;
+        }
+        const int64_t row = std::clamp<int64_t>(4 * int64_t(spheres), kLimit, 1000);
+        return ++count >= (moved < kMoment * radius ? row : kLimit);
     }
 };
 

@@ -61,8 +61,10 @@ void Engine::choose_shells(const Tuning& tuning) {
         most_margin_ = std::max(margin_, 0.249 * (half_period_ - 2 * largest));
     }
     // All on one level if the sizes allow.
-    const double common = largest <= 2 * r ? largest : r;
-    cell_ = tuning.cell > 0 ? tuning.cell : 2 * (common + margin_) * (1 + 1e-9);
+    common_ = largest <= 2 * r ? largest : r;
+    cell_ = tuning.cell > 0 ? tuning.cell : 2 * (common_ + margin_) * (1 + 1e-9);
+    giant_ = 2 * r;
+    least_margin_ = std::min(margin_, 0.1 * r);
 }
 
 // An epoch lasts some dozens of collisions of a sphere. Its exact length does not matter; that it
@@ -101,23 +103,37 @@ void Engine::settle(int i) {
 
 void Engine::build_shells() {
     if (!shells_on_) return;
+    while (!build_shells_at(margin_)) {
+        margin_ *= 0.5;
+        cell_ = 2 * (common_ + margin_) * (1 + 1e-9);
+    }
+}
+
+// False if the spheres stand too close together for shells this wide: the mean density says
+// nothing of a dense cluster with one sphere far away.
+bool Engine::build_shells_at(double margin) {
     const size_t n = size();
     shells_.resize(n);
     mark_.assign(n, 0);
     stamp_ = 0;
     rows_.reset(n);
-    cells_.reset(cell_, world_.period, n);
-    widest_margin_ = margin_;
+    cells_.reset(cell_, world_.period, extent(spheres_, world_.period), n);
+    widest_margin_ = margin;
+    size_t pairs = 0;
     for (size_t i = 0; i < n; ++i) {
-        shells_[i] = {motion(int(i), now_).x, spheres_[i].r + margin_};
+        shells_[i] = {motion(int(i), now_).x, spheres_[i].r + margin};
         found_.clear();
         cells_.search(shells_[i], shells_, found_);
         cells_.add(int(i), shells_[i]);
+        pairs += found_.size();
+        // 25 neighbours each; a lone giant, which may have all, does not count as a crowd.
+        if (i >= 256 && pairs > 12 * i + i && margin > 2 * least_margin_) return false;
         for (const int32_t j : found_) {
             rows_.add(int(i), j);
             rows_.add(j, int32_t(i));
         }
     }
+    return true;
 }
 
 void Engine::predict_all() {
@@ -150,6 +166,7 @@ void Engine::begin_epoch(double t) {
     for (double& touch : last_touch_) touch -= step;
     for (Watch& w : watches_) w.start -= step;
     user_ -= step;
+    asked_ = kNever;
     log_shift_ -= step;
     now_ = std::max(0.0, now_ - step);
     if (epoch_events_ < 4 * int64_t(size())) clock_.epoch *= 2;
@@ -188,7 +205,7 @@ public:
 
 private:
     void take(void* to, size_t n) {
-        std::memcpy(to, bytes_.data() + at_, n);
+        if (n > 0) std::memcpy(to, bytes_.data() + at_, n);  // `to` is null if empty
         at_ += n;
     }
     const std::string& bytes_;
@@ -204,6 +221,8 @@ std::string Engine::checkpoint() const {
     w.one(clock_);
     w.one(now_);
     w.one(user_);
+    w.one(asked_);
+    w.one(asked_time_);
     w.one(epoch_events_);
     w.one(collisions_);
     w.one(wall_collisions_);
@@ -234,6 +253,8 @@ void Engine::restore(const std::string& bytes) {
     r.one(clock_);
     r.one(now_);
     r.one(user_);
+    r.one(asked_);
+    r.one(asked_time_);
     r.one(epoch_events_);
     r.one(collisions_);
     r.one(wall_collisions_);
@@ -263,7 +284,8 @@ Overlap first_overlap(const std::vector<StartSphere>& spheres, const Vec3& perio
     const Vec3 inverse{period.x > 0 ? 1 / period.x : 0, period.y > 0 ? 1 / period.y : 0,
                        period.z > 0 ? 1 / period.z : 0};
     Cells cells;
-    cells.reset(2 * median_radius(packed) * (1 + 1e-9), period, spheres.size());
+    cells.reset(2 * median_radius(packed) * (1 + 1e-9), period, extent(packed, period),
+                spheres.size());
     std::vector<Shell> shells(spheres.size());
     std::vector<int32_t> found;
     for (size_t i = 0; i < spheres.size(); ++i) {

@@ -31,7 +31,7 @@ void search_everything(const Vec3& period, double spread) {
     std::mt19937_64 bits(3);
     std::uniform_real_distribution<double> u(-0.5, 0.5);
     Cells cells;
-    cells.reset(1.0, period, 300);
+    cells.reset(1.0, period, Vec3{1, 1, 1} * spread, 300);
     std::vector<Shell> shells(300);
     const auto place = [&](Shell& s, double reach) {
         s = {{u(bits) * spread, u(bits) * spread, u(bits) * spread}, reach};

@@ -1,6 +1,7 @@
 """The contract every engine keeps, and the fast one behind it."""
 
 import os
+import threading
 from dataclasses import replace
 from enum import IntEnum
 from typing import Any, Protocol
@@ -89,7 +90,7 @@ class FastEngine:
 
     Cost per collision does not grow with the number of spheres. `log=False` keeps no event
     records. `margin`, `cell` and `slice_seconds` are bookkeeping for tests: the trajectory's bits
-    do not depend on them.
+    do not depend on them. Any thread may call it: a call waits for the slice in hand.
     """
 
     def __init__(
@@ -103,6 +104,7 @@ class FastEngine:
         slice_seconds: float = 0.05,
     ) -> None:
         self._start = state.copy()
+        self._lock = threading.Lock()  # the core runs without the GIL
         walls = np.column_stack(
             [
                 world.walls["kind"],
@@ -176,21 +178,25 @@ class FastEngine:
         if not until >= self.time:
             msg = f"cannot advance to time {until}: it is already {self.time}; give a later time"
             raise InputError(msg)
-        stop = Stop(self._core.advance(until, max_collisions, max_events))
-        if _CHECK:
-            self._core.check()
+        with self._lock:
+            stop = Stop(self._core.advance(until, max_collisions, max_events))
+            if _CHECK:
+                self._core.check()
         return stop
 
     def take_events(self) -> NDArray[Any]:
         """Records (dtype `EVENT`, absolute times) of all events since the last call."""
-        start, raw = self._core.take_log()
+        with self._lock:
+            start, raw = self._core.take_log()
         events: NDArray[Any] = raw.view(EVENT)
         events["time"] += start
         return events
 
     def state(self) -> State:
         """A copy of the state at `time`."""
-        position, velocity, image, count, resting = self._core.state()
+        with self._lock:
+            position, velocity, image, count, resting = self._core.state()
+            time, collisions, wall_collisions = self.time, self.collisions, self.wall_collisions
         return replace(
             self._start.copy(),
             position=position,
@@ -198,19 +204,22 @@ class FastEngine:
             image=image,
             collision_count=count,
             resting=resting.view(np.bool_),
-            time=self.time,
-            collisions=self.collisions,
-            wall_collisions=self.wall_collisions,
+            time=time,
+            collisions=collisions,
+            wall_collisions=wall_collisions,
         )
 
     def max_overlap(self) -> float:
         """Largest (sigma - r) / sigma met in a collision or between neighbours now."""
-        return self._core.max_overlap()
+        with self._lock:
+            return self._core.max_overlap()
 
     def checkpoint(self) -> bytes:
         """The stored states as they are: `restore` then continues with the same bits."""
-        return self._core.checkpoint()
+        with self._lock:
+            return self._core.checkpoint()
 
     def restore(self, checkpoint: bytes) -> None:
         """Continue from a checkpoint of an engine built from the same state and world."""
-        self._core.restore(checkpoint)
+        with self._lock:
+            self._core.restore(checkpoint)

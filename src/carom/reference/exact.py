@@ -275,7 +275,9 @@ class ExactEngine:
         self._collisions += 1
         self._log.append((time, i, j, outcome.impulse))
         self._account(outcome)
-        if outcome.inelastic and any([a.collapses(time, speed), b.collapses(time, speed)]):
+        n = len(self._bodies)
+        counted = outcome.inelastic and [x.collapses(time, speed, n) for x in (a, b)]
+        if counted and any(counted):
             self._collapse = (time, i, j)
         self._wake(i, outcome.impulse)
         self._wake(j, outcome.impulse)
@@ -294,7 +296,7 @@ class ExactEngine:
         j = CAME_TO_REST - k if outcome.rests else -1 - k
         self._log.append((time, i, j, outcome.impulse))
         self._account(outcome)
-        if outcome.inelastic and body.collapses(time, speed):
+        if outcome.inelastic and body.collapses(time, speed, len(self._bodies)):
             self._collapse = (time, i, -1 - k)
         self._wake(i, outcome.impulse)
         if outcome.rests:
