@@ -55,7 +55,8 @@ class Run:
         assert self.engine.max_overlap() < 1e-12, f"{self.name}: spheres overlap"
         n = len(self.engine.state())
         bytes_per_sphere = self.engine.memory / n
-        assert bytes_per_sphere < 400 or n < 2000, f"{self.name}: {bytes_per_sphere} bytes"
+        most = 400 if self.name.startswith("fluid") else 600  # wide shells in a dilute gas
+        assert bytes_per_sphere < most, f"{self.name}: {bytes_per_sphere} bytes"
         return {
             "run": self.name,
             "n": n,
@@ -72,7 +73,8 @@ def assert_rate(run: Run, packing_fraction: float) -> None:
     """The collision rate per sphere is Enskog's, 24 phi g sqrt(kT / pi m) / sigma.
 
     g is the contact value of Carnahan and Starling. The error of a measured rate is 1.2 /
-    sqrt(collisions); 0.4 % is allowed for the theory, the rest of equilibration for the start.
+    sqrt(collisions); 0.4 % is allowed for the theory, and 2 % while the lattice start is still
+    being forgotten (fewer than ten collisions per sphere).
     """
     if packing_fraction > 0.45:
         return  # the lattice start has not melted after so few collisions
@@ -83,7 +85,7 @@ def assert_rate(run: Run, packing_fraction: float) -> None:
     temperature = 2 * run.energy() / (3 * n - 3)
     g = (1 - packing_fraction / 2) / (1 - packing_fraction) ** 3
     enskog = 24 * packing_fraction * g * np.sqrt(temperature / np.pi)
-    allowed = 0.004 + 4 * 1.2 / np.sqrt(collisions)
+    allowed = (0.004 if before > 5 * n else 0.02) + 4 * 1.2 / np.sqrt(collisions)
     assert abs(rate / enskog - 1) < allowed, f"{run.name}: {rate} against {enskog}"
 
 

@@ -90,7 +90,10 @@ def agreement(
             assert np.sum(np.abs(story["time"] - event["time"]) < rounding) > 1, (event, told[k])
             return k, len(story)
     if Stop.COLLAPSE not in stops and world.contact_time == 0.0:
-        assert same_end(reference, fast, twin, world, rounding)
+        # A sticky sphere pinched between another and a sticky wall is pushed to and fro by ever
+        # smaller impulses; which of them is the last, rounding decides.
+        pinched = world.restitution < 0.5 and np.any(world.walls["restitution"] < 0.5)
+        assert same_end(reference, fast, twin, world, 1e-5 if pinched else rounding)
     return len(story), len(story)
 
 
