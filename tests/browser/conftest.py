@@ -40,9 +40,10 @@ class Shown:
 
     def settle(self):
         """Pause, and wait until the picture shows the last moment."""
-        if self.js("carom.timeline.newest.playing"):
+        if self.js("carom.timeline.newest?.playing !== false"):
             self.page.get_by_role("button", name="Pause", exact=True).click()
-        self.wait("!carom.timeline.newest.playing && carom.timeline.t === carom.timeline.newest.t")
+        self.wait("carom.timeline.newest?.playing === false")
+        self.wait("carom.timeline.t === carom.timeline.newest?.t")
         self.page.mouse.move(3, 300)
         # Two pictures later everything is on the screen, the ten-times-a-second numbers too.
         time.sleep(0.25)

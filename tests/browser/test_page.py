@@ -145,7 +145,7 @@ def test_the_picture_follows_the_motion(show):
         x, y, _ = where(shown, (-5 + 0.8 * moment, 0, 0))
         assert np.argmax(around(shown, x, y).mean(axis=0)) == 1
         shown.page.keyboard.press("Space")
-        shown.wait("carom.timeline.newest.playing")
+        shown.wait("carom.timeline.newest?.playing")
 
 
 def test_speed_restart_and_play_reach_the_engine(show):
@@ -153,28 +153,28 @@ def test_speed_restart_and_play_reach_the_engine(show):
     page = shown.page
     slider = page.get_by_role("slider", name="Speed")
     slider.fill("-100")
-    shown.wait("carom.timeline.newest.speed === 0.01")
+    shown.wait("carom.timeline.newest?.speed === 0.01")
     assert shown.text("speed-value") == "0.01×"
     time.sleep(0.2)
     before, clock = shown.sim.time, time.perf_counter()
     time.sleep(0.6)
     rate = (shown.sim.time - before) / (time.perf_counter() - clock)
-    assert rate == pytest.approx(0.6, rel=0.3)  # 60 ticks per second, a hundredth of them
+    assert rate == pytest.approx(0.6, rel=0.5)  # 60 ticks per second, a hundredth of them
     page.locator("#speed-value").click()
-    shown.wait("carom.timeline.newest.speed === 1")
-    shown.wait("carom.timeline.newest.collisions > 3")
+    shown.wait("carom.timeline.newest?.speed === 1")
+    shown.wait("carom.timeline.newest?.collisions > 3")
     page.get_by_role("button", name="Pause", exact=True).click()
-    shown.wait("!carom.timeline.newest.playing")
+    shown.wait("carom.timeline.newest?.playing === false")
     start = shown.sim.scene.spheres.position
     assert not np.array_equal(shown.sim.position, start)
     page.get_by_role("button", name="Restart").click()
-    shown.wait("carom.timeline.newest.epoch === 1")
-    shown.wait("carom.timeline.newest.playing")
+    shown.wait("carom.timeline.newest?.epoch === 1")
+    shown.wait("carom.timeline.newest?.playing")
 
 
 def test_numbers_on_the_page_are_the_engines(show):
     shown = show(carom.Simulation(scenes.bounce()))
-    shown.wait("carom.timeline.newest.collisions > 5")
+    shown.wait("carom.timeline.newest?.collisions > 5")
     shown.settle()
     sim = shown.sim
     assert shown.text("n") == "25"
@@ -249,7 +249,7 @@ def test_phone(show):
         carom.Simulation(scenes.phase_0()), 390, 844, has_touch=True, device_scale_factor=2
     )
     page = shown.page
-    shown.wait("carom.timeline.newest.wallCollisions > 0")
+    shown.wait("carom.timeline.newest?.wallCollisions > 0")
     assert page.locator("#panel").is_hidden()
     page.get_by_role("button", name="Numbers and colours").tap()
     assert page.locator("#panel").is_visible()
@@ -263,7 +263,7 @@ def test_phone(show):
     for button in page.locator("#bar button").all():
         assert button.bounding_box()["width"] >= 40
     page.get_by_role("button", name="Pause", exact=True).tap()
-    shown.wait("!carom.timeline.newest.playing")
+    shown.wait("carom.timeline.newest?.playing === false")
 
 
 def test_pinch_zooms_and_one_finger_turns(show):
