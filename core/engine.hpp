@@ -148,7 +148,7 @@ private:
 
     World world_;
     Vec3 inverse_period_;
-    bool gravity_ = false, periodic_ = false, inelastic_ = false;
+    bool gravity_ = false, periodic_ = false;
     bool shells_on_ = true;        // neighbours matter at all
     double half_period_ = kNever;  // of the shortest periodic axis
 

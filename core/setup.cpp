@@ -41,9 +41,9 @@ void Engine::choose_shells(const Tuning& tuning) {
     constexpr double kNeighbours = 11;
     if (!shells_on_) return;
     const double r = median_radius(spheres_);
-    double largest = 0, volume = 1, giants = 0;
+    double largest = 0, giants = 0;
     const Vec3 box = extent(spheres_, world_.period);
-    volume = box.x * box.y * box.z;
+    const double volume = box.x * box.y * box.z;
     for (const Sphere& s : spheres_) {
         largest = std::max(largest, s.r);
         if (s.r > 2 * r) giants += kSpherical * s.r * s.r * s.r;
@@ -126,8 +126,8 @@ bool Engine::build_shells_at(double margin) {
         cells_.search(shells_[i], shells_, found_);
         cells_.add(int(i), shells_[i]);
         pairs += found_.size();
-        // 25 neighbours each; a lone giant, which may have all, does not count as a crowd.
-        if (i >= 256 && pairs > 12 * i + i && margin > 2 * least_margin_) return false;
+        // 24 neighbours each, and one more pair for a lone giant, which may have all: no crowd.
+        if (i >= 256 && pairs > 13 * i && margin > 2 * least_margin_) return false;
         for (const int32_t j : found_) {
             rows_.add(int(i), j);
             rows_.add(j, int32_t(i));
