@@ -38,6 +38,7 @@ TABLE = {
             "renderer",
             "shaders",
             "timeline",
+            "toolbar",
             "tools",
             "trail",
             "walls",

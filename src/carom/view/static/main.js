@@ -2,13 +2,15 @@
 import { Camera } from "./camera.js";
 import { Connection, takeToken } from "./connection.js";
 import { Controls } from "./controls.js";
-import { attachPointers } from "./gestures.js";
+import { Inspector } from "./inspector.js";
 import { drawLegend } from "./legend.js";
 import { dot } from "./matrix.js";
 import { say } from "./protocol.js";
 import { Readout } from "./readout.js";
 import { Renderer } from "./renderer.js";
 import { Timeline } from "./timeline.js";
+import { attachToolbar } from "./toolbar.js";
+import { Hands } from "./tools.js";
 
 const FINEST = 2; // pixels of the picture per pixel of the page
 const NARROW = matchMedia("(max-width: 720px)");
@@ -28,7 +30,7 @@ class Page {
     /** @type {import("./renderer.js").Options} */
     this.options = { color: "energy", wire: false, theme: LIGHT.matches ? "light" : "dark" };
     this.stale = true; // something other than time and camera has changed
-    this.drawn = { t: NaN, camera: -1 };
+    this.drawn = { t: NaN, camera: -1, hands: -1 };
     this.before = performance.now();
     this.controls = new Controls(this.#wishes(), this.camera);
     this.connection = new Connection(takeToken(), {
@@ -37,7 +39,18 @@ class Page {
       failure: (sentence) => this.#say("failure", sentence),
       state: (state, sentence) => this.#state(state, sentence),
     });
-    attachPointers(this.canvas, this.camera);
+    this.hands = new Hands({
+      canvas: this.canvas,
+      camera: this.camera,
+      send: (message) => this.connection.send(message),
+      toast: (sentence) => console.debug(sentence),
+      fit: () => this.camera.glide(() => this.#fit()),
+    });
+    attachToolbar(this.hands);
+    this.inspector = new Inspector(at("inspector"), this.hands);
+    addEventListener("keydown", (event) => {
+      if (this.hands.key(event)) event.preventDefault();
+    });
     this.controls.openPanel(!NARROW.matches);
     new ResizeObserver(() => this.#resize()).observe(this.canvas);
     NARROW.addEventListener("change", () => this.controls.openPanel(!NARROW.matches));
@@ -73,6 +86,7 @@ class Page {
     this.scene = scene;
     this.renderer.setScene(scene);
     this.timeline.clear();
+    this.hands.setScene(scene);
     const { about } = scene;
     // After a restart the same scene comes again: what people chose stays.
     const same =
@@ -177,12 +191,13 @@ class Page {
     } else {
       this.renderer.setKeyframes(...pair);
       this.readout.show(this.timeline.t, now);
+      this.hands.setPair(...pair, this.timeline.t);
     }
     const { t } = this.timeline;
     const { version } = this.camera;
-    if (!this.stale && t === this.drawn.t && version === this.drawn.camera) return;
+    if (!this.stale && t === this.drawn.t && version === this.drawn.camera && this.hands.version === this.drawn.hands) return;
     this.renderer.draw(t, this.camera, this.options);
-    this.drawn = { t, camera: version };
+    this.drawn = { t, camera: version, hands: this.hands.version };
     this.stale = false;
   }
 }
