@@ -6,18 +6,16 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
 from types import TracebackType
-from typing import Any, Literal, Self, TypeAlias
+from typing import Literal, Self, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from carom import mechanics
-from carom.ball import Ball
 from carom.checks import nearest, number
 from carom.engine import FastEngine, Stop
 from carom.errors import CollapseError, InputError, RunError, UnknownNameError
 from carom.motion import MakeEngine, Motion, Surroundings
-from carom.readout import Readout
+from carom.placing import Placing
 from carom.reference.exact import ExactEngine
 from carom.reference.tick import TickEngine
 from carom.rules import Smooth
@@ -30,7 +28,7 @@ METHODS = ("exact", "tick", "reference")
 LARGEST_COUNT = 2**53  # beyond it a float that stands for a count is no longer exact
 
 
-class Simulation(Readout):
+class Simulation(Placing):
     """Spheres that move and collide.
 
     Parameters
@@ -117,76 +115,6 @@ class Simulation(Readout):
     def pace(self) -> float:
         """Simulated time per second at which the scene looks best."""
         return 1.0 if self._scene is None else self._scene.pace
-
-    # Placing spheres.
-
-    def add(
-        self,
-        position: ArrayLike = (0.0, 0.0, 0.0),
-        velocity: ArrayLike = (0.0, 0.0, 0.0),
-        radius: float = 0.5,
-        mass: float = 1.0,
-        color: str | int | None = None,
-        species: int = 0,
-        fixed: bool = False,
-    ) -> Ball:
-        """Add one sphere, now, and return a live view of it.
-
-        Parameters
-        ----------
-        position, velocity : (3,) array_like
-        radius, mass : float
-        color : str or int, optional
-            A name ("red"), "#rrggbb" or 0xRRGGBB; one per species if left out.
-        species : int
-            A label, for colouring and measuring.
-        fixed : bool
-            Nothing moves it: its mass is infinite and it counts in no energy or momentum.
-
-        Raises
-        ------
-        OverlapError
-            If it reaches into another sphere (names the pair and the depth) or a wall.
-        InputError
-            If a value cannot be used.
-        """
-        spheres = Spheres.of(position, velocity, radius, mass, color, species, fixed)
-        if len(spheres) != 1:
-            msg = f"add() takes one sphere and got {len(spheres)} positions; use add_many()"
-            raise InputError(msg)
-        self._motion.extend(spheres)
-        return Ball(self._motion, len(self) - 1)
-
-    def add_many(self, position: ArrayLike, **options: Any) -> slice:
-        """Add spheres and return where they stand in the arrays.
-
-        Parameters
-        ----------
-        position : (N, 3) array_like
-        **options
-            velocity (N, 3), radius, mass, color, species, fixed (N,): one value for all,
-            or one each; see `add`.
-
-        Raises
-        ------
-        OverlapError, InputError
-            See `add`. Then none is added.
-        """
-        names = ("velocity", "radius", "mass", "color", "species", "fixed")
-        for name in options:
-            if name not in names:
-                msg = f"a sphere has no {name!r}{nearest(name, names)}"
-                raise UnknownNameError(msg)
-        first = len(self)
-        self._motion.extend(Spheres.of(position, **options))
-        return slice(first, len(self))
-
-    def __len__(self) -> int:
-        return len(self._motion.state)
-
-    def __getitem__(self, index: int) -> Ball:
-        """Return a live view of sphere `index`."""
-        return Ball(self._motion, range(len(self))[index])
 
     # Letting time run.
 
