@@ -4,7 +4,7 @@ import math
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from carom import edits, fit, mechanics
 from carom.engine import NO_LIMIT, Engine, Stop
 from carom.interrupts import HeldInterrupt
 from carom.rules import Smooth
-from carom.scene import Spheres
+from carom.scene import Scene, Spheres
 from carom.state import EVENT, State
 from carom.walls import Wall, wall_names, world
 from carom.world import World
@@ -30,6 +30,11 @@ class Surroundings:
     rule: Smooth
     gravity: tuple[float, float, float]
     collide: bool
+
+    @classmethod
+    def of(cls, scene: Scene) -> Self:
+        """Those of a scene."""
+        return cls(scene.walls, scene.rule, scene.gravity, scene.collide)
 
     def world(self) -> World:
         """The same as numbers; contradictions are refused with `InputError`."""

@@ -82,19 +82,19 @@ class Simulation(Placing):
     ) -> None:
         changes = {"walls": walls, "rule": rule, "gravity": gravity, "collide": collide}
         changes = {name: value for name, value in changes.items() if value is not None}
-        if scene is not None and not isinstance(scene, Scene):
-            msg = f"scene must be a Scene such as carom.scenes.gas(), not {scene!r:.60}"
-            raise InputError(msg)
+        if scene is not None:
+            _refuse_other_than_scene(scene)
         empty = Scene(Spheres.of(np.zeros((0, 3))), (Open(),))
         described = replace(empty if scene is None else scene, **changes)  # type: ignore[arg-type]
         self._scene = None if scene is None else described
         self._method = method
         self._tick = number("tick", tick, above=0)
         state = State.empty() if scene is None else described.build()[0]
-        around = Surroundings(described.walls, described.rule, described.gravity, described.collide)
         limit = _count("keep_events", keep_events)
         make = _engine_maker(method, self._tick, log=limit > 0)
-        self._motion = Motion(state, around, make, limit, strict=method != "tick")
+        self._motion = Motion(
+            state, Surroundings.of(described), make, limit, strict=method != "tick"
+        )
 
     @property
     def scene(self) -> Scene | None:
@@ -215,9 +215,27 @@ class Simulation(Placing):
             f"quick succession be elastic with rule={cure}, or take a larger restitution"
         )
 
-    def reset(self) -> None:
-        """Go back to where the first run began: time, spheres, walls, rule and gravity."""
-        self._motion.restart()
+    def reset(self, scene: Scene | None = None) -> None:
+        """Go back to where the first run began: time, spheres, walls, rule and gravity.
+
+        Parameters
+        ----------
+        scene : Scene, optional
+            Go to the start of this scene instead, by the same method. Nothing of the old one
+            stays, so each `Ball` of it is gone.
+
+        Raises
+        ------
+        InputError
+            If it is no scene or cannot be run. Then nothing changes.
+        """
+        if scene is None:
+            self._motion.restart()
+            return
+        _refuse_other_than_scene(scene)
+        state = scene.build()[0]
+        self._motion.begin(state, Surroundings.of(scene))
+        self._scene = scene
 
     def show(self, *, port: int = 0, open_browser: bool = True) -> None:
         """Show it live in the browser until Ctrl-C.
@@ -258,6 +276,12 @@ class Simulation(Placing):
             f"<Simulation: {len(self)} spheres, time {self.time:.6g}, "
             f"{self.collisions} collisions, method {method}>"
         )
+
+
+def _refuse_other_than_scene(scene: object) -> None:
+    if not isinstance(scene, Scene):
+        msg = f"scene must be a Scene such as carom.scenes.gas(), not {scene!r:.60}"
+        raise InputError(msg)
 
 
 def _engine_maker(method: Method, tick: float, log: bool) -> MakeEngine:
