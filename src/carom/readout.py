@@ -200,8 +200,9 @@ class Readout:
     def energy_drift(self) -> float:
         """(kinetic + potential + dissipated - start)/start: the error of the arithmetic.
 
-        Energy that comes and goes by assignments between runs counts as start. If the start
-        is 0, the error is relative to the sizes of kinetic and potential energy.
+        An assignment, addition or removal between runs makes a new start, and the errors of
+        all starts are summed. If the energy at a start is 0, its error is relative to the sizes
+        of kinetic and potential energy.
         """
         return self._motion.energy_drift
 

@@ -3,21 +3,19 @@
 import math
 import sys
 from collections.abc import Callable, Iterable
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from types import TracebackType
-from typing import Any, Literal, Self, TypeAlias
+from typing import Literal, Self, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from carom import mechanics
-from carom.ball import Ball
 from carom.checks import nearest, number
 from carom.engine import FastEngine, Stop
 from carom.errors import CollapseError, InputError, RunError, UnknownNameError
-from carom.motion import MakeEngine, Motion, Surroundings
-from carom.readout import Readout
+from carom.motion import MakeEngine, Motion, Saved, Surroundings
+from carom.placing import Placing
 from carom.reference.exact import ExactEngine
 from carom.reference.tick import TickEngine
 from carom.rules import Smooth
@@ -30,7 +28,27 @@ METHODS = ("exact", "tick", "reference")
 LARGEST_COUNT = 2**53  # beyond it a float that stands for a count is no longer exact
 
 
-class Simulation(Readout):
+@dataclass(frozen=True, eq=False)
+class Bookmark:
+    """A moment of a simulation, see `Simulation.bookmark`.
+
+    Attributes
+    ----------
+    time : float
+    collisions, wall_collisions : int
+    nbytes : int
+        Memory it holds at most; bookmarks between two changes share a part of it.
+    """
+
+    time: float
+    collisions: int
+    wall_collisions: int
+    nbytes: int
+    scene: Scene | None = field(repr=False)
+    saved: Saved = field(repr=False)
+
+
+class Simulation(Placing):
     """Spheres that move and collide.
 
     Parameters
@@ -84,19 +102,19 @@ class Simulation(Readout):
     ) -> None:
         changes = {"walls": walls, "rule": rule, "gravity": gravity, "collide": collide}
         changes = {name: value for name, value in changes.items() if value is not None}
-        if scene is not None and not isinstance(scene, Scene):
-            msg = f"scene must be a Scene such as carom.scenes.gas(), not {scene!r:.60}"
-            raise InputError(msg)
+        if scene is not None:
+            _refuse_other_than_scene(scene)
         empty = Scene(Spheres.of(np.zeros((0, 3))), (Open(),))
         described = replace(empty if scene is None else scene, **changes)  # type: ignore[arg-type]
         self._scene = None if scene is None else described
         self._method = method
         self._tick = number("tick", tick, above=0)
         state = State.empty() if scene is None else described.build()[0]
-        around = Surroundings(described.walls, described.rule, described.gravity, described.collide)
         limit = _count("keep_events", keep_events)
         make = _engine_maker(method, self._tick, log=limit > 0)
-        self._motion = Motion(state, around, make, limit, strict=method != "tick")
+        self._motion = Motion(
+            state, Surroundings.of(described), make, limit, strict=method != "tick"
+        )
 
     @property
     def scene(self) -> Scene | None:
@@ -117,76 +135,6 @@ class Simulation(Readout):
     def pace(self) -> float:
         """Simulated time per second at which the scene looks best."""
         return 1.0 if self._scene is None else self._scene.pace
-
-    # Placing spheres.
-
-    def add(
-        self,
-        position: ArrayLike = (0.0, 0.0, 0.0),
-        velocity: ArrayLike = (0.0, 0.0, 0.0),
-        radius: float = 0.5,
-        mass: float = 1.0,
-        color: str | int | None = None,
-        species: int = 0,
-        fixed: bool = False,
-    ) -> Ball:
-        """Add one sphere, now, and return a live view of it.
-
-        Parameters
-        ----------
-        position, velocity : (3,) array_like
-        radius, mass : float
-        color : str or int, optional
-            A name ("red"), "#rrggbb" or 0xRRGGBB; one per species if left out.
-        species : int
-            A label, for colouring and measuring.
-        fixed : bool
-            Nothing moves it: its mass is infinite and it counts in no energy or momentum.
-
-        Raises
-        ------
-        OverlapError
-            If it reaches into another sphere (names the pair and the depth) or a wall.
-        InputError
-            If a value cannot be used.
-        """
-        spheres = Spheres.of(position, velocity, radius, mass, color, species, fixed)
-        if len(spheres) != 1:
-            msg = f"add() takes one sphere and got {len(spheres)} positions; use add_many()"
-            raise InputError(msg)
-        self._motion.extend(spheres)
-        return Ball(self._motion, len(self) - 1)
-
-    def add_many(self, position: ArrayLike, **options: Any) -> slice:
-        """Add spheres and return where they stand in the arrays.
-
-        Parameters
-        ----------
-        position : (N, 3) array_like
-        **options
-            velocity (N, 3), radius, mass, color, species, fixed (N,): one value for all,
-            or one each; see `add`.
-
-        Raises
-        ------
-        OverlapError, InputError
-            See `add`. Then none is added.
-        """
-        names = ("velocity", "radius", "mass", "color", "species", "fixed")
-        for name in options:
-            if name not in names:
-                msg = f"a sphere has no {name!r}{nearest(name, names)}"
-                raise UnknownNameError(msg)
-        first = len(self)
-        self._motion.extend(Spheres.of(position, **options))
-        return slice(first, len(self))
-
-    def __len__(self) -> int:
-        return len(self._motion.state)
-
-    def __getitem__(self, index: int) -> Ball:
-        """Return a live view of sphere `index`."""
-        return Ball(self._motion, range(len(self))[index])
 
     # Letting time run.
 
@@ -287,9 +235,72 @@ class Simulation(Readout):
             f"quick succession be elastic with rule={cure}, or take a larger restitution"
         )
 
-    def reset(self) -> None:
-        """Go back to where the first run began: time, spheres, walls, rule and gravity."""
-        self._motion.restart()
+    def reset(self, scene: Scene | None = None) -> None:
+        """Go back to where the first run began: time, spheres, walls, rule and gravity.
+
+        Parameters
+        ----------
+        scene : Scene, optional
+            Go to the start of this scene instead, by the same method. Nothing of the old one
+            stays, so each `Ball` of it is gone.
+
+        Raises
+        ------
+        InputError
+            If it is no scene or cannot be run. Then nothing changes.
+        """
+        if scene is None:
+            self._motion.restart()
+            return
+        _refuse_other_than_scene(scene)
+        state = scene.build()[0]
+        self._motion.begin(state, Surroundings.of(scene))
+        self._scene = scene
+
+    def bookmark(self) -> Bookmark:
+        """Remember this moment, so that `return_to` can come back to it.
+
+        Cost: about 100 bytes and 0.2 microseconds a sphere; coming back takes some five times as long.
+        """
+        saved = self._motion.saved()
+        return Bookmark(
+            self.time, self.collisions, self.wall_collisions, saved.nbytes, self._scene, saved
+        )
+
+    def return_to(self, bookmark: Bookmark) -> None:
+        """Go back to a moment as if the simulation had never left it.
+
+        Spheres, walls, rule, gravity and all counters are as they were, whatever was changed
+        since, and a run goes on with the same bits. `events` is empty until then. An engine
+        of your own needs `checkpoint` and `restore` for the same bits; without them it is
+        built anew from the state.
+
+        Parameters
+        ----------
+        bookmark : Bookmark
+            Of this simulation; it may serve again and again.
+
+        Raises
+        ------
+        InputError
+            If it is of another simulation.
+
+        Examples
+        --------
+        >>> import carom
+        >>> sim = carom.Simulation(carom.scenes.two_balls())
+        >>> sim.run(until=1)
+        >>> before = sim.bookmark()
+        >>> sim.run(collisions=1)
+        >>> sim.return_to(before)
+        >>> sim.time, sim.collisions
+        (1.0, 0)
+        """
+        if not isinstance(bookmark, Bookmark):
+            msg = f"a Bookmark is what bookmark() returns, not {bookmark!r:.60}"
+            raise InputError(msg)
+        self._motion.return_to(bookmark.saved)
+        self._scene = bookmark.scene
 
     def show(self, *, port: int = 0, open_browser: bool = True) -> None:
         """Show it live in the browser until Ctrl-C.
@@ -330,6 +341,12 @@ class Simulation(Readout):
             f"<Simulation: {len(self)} spheres, time {self.time:.6g}, "
             f"{self.collisions} collisions, method {method}>"
         )
+
+
+def _refuse_other_than_scene(scene: object) -> None:
+    if not isinstance(scene, Scene):
+        msg = f"scene must be a Scene such as carom.scenes.gas(), not {scene!r:.60}"
+        raise InputError(msg)
 
 
 def _engine_maker(method: Method, tick: float, log: bool) -> MakeEngine:
