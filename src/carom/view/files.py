@@ -10,12 +10,14 @@ HTML, CSS, JS, SVG = "text/html", "text/css", "text/javascript", "image/svg+xml"
 TABLE = {
     "/": ("index.html", HTML),
     "/style.css": ("style.css", CSS),
+    "/plots.css": ("plots.css", CSS),
     "/icon.svg": ("icon.svg", SVG),
     **{
         f"/{name}.js": (f"{name}.js", JS)
         for name in (
             "main",
             "camera",
+            "chart",
             "colors",
             "connection",
             "controls",
@@ -25,12 +27,17 @@ TABLE = {
             "legend",
             "matrix",
             "numbers",
+            "plots",
             "program",
             "protocol",
             "readout",
             "renderer",
+            "section",
             "shaders",
+            "speeds",
+            "statistics",
             "timeline",
+            "traces",
             "walls",
         )
     },
