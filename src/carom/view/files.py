@@ -14,13 +14,14 @@ TABLE = {
     "/icon.svg": ("icon.svg", SVG),
     **{
         f"/{name}.css": (f"{name}.css", CSS)
-        for name in ("bars", "dialogs", "narrow", "panel", "style")
+        for name in ("bars", "dialogs", "narrow", "panel", "plots", "style")
     },
     **{
         f"/{name}.js": (f"{name}.js", JS)
         for name in (
             "main",
             "camera",
+            "chart",
             "clipboard",
             "colors",
             "connection",
@@ -41,21 +42,26 @@ TABLE = {
             "matrix",
             "numbers",
             "parameters",
+            "plots",
             "program",
             "protocol",
             "readout",
             "renderer",
             "scales",
+            "section",
             "sections",
             "settings",
             "shaders",
             "share",
             "slider",
+            "speeds",
             "split",
+            "statistics",
             "store",
             "theme",
             "timeline",
             "toast",
+            "traces",
             "walls",
         )
     },
