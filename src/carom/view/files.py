@@ -14,7 +14,7 @@ TABLE = {
     "/icon.svg": ("icon.svg", SVG),
     **{
         f"/{name}.css": (f"{name}.css", CSS)
-        for name in ("bars", "dialogs", "narrow", "panel", "plots", "style")
+        for name in ("bars", "dialogs", "hands", "narrow", "panel", "plots", "style")
     },
     **{
         f"/{name}.js": (f"{name}.js", JS)
@@ -28,11 +28,14 @@ TABLE = {
             "controls",
             "dialog",
             "dom",
+            "flash",
             "gallery",
             "gestures",
             "glsl",
             "gravity",
+            "handle",
             "help",
+            "inspector",
             "interpolation",
             "keys",
             "later",
@@ -40,8 +43,11 @@ TABLE = {
             "legend",
             "link",
             "matrix",
+            "newball",
             "numbers",
+            "overlay",
             "parameters",
+            "pick",
             "plots",
             "program",
             "protocol",
@@ -61,7 +67,9 @@ TABLE = {
             "theme",
             "timeline",
             "toast",
+            "tools",
             "traces",
+            "trail",
             "walls",
         )
     },

@@ -1,0 +1,134 @@
+/**
+ * The collision that a step has led to: a ring around both balls, and an arrow along the impulse.
+ *
+ * @typedef {import("./matrix.js").Vec3} Vec3
+ * @typedef {import("./protocol.js").Scene} Scene
+ * @typedef {import("./tools.js").Side} Side
+ * @typedef {import("./overlay.js").Arrow} Arrow
+ * @typedef {import("./overlay.js").Mark} Mark
+ * @typedef {{t: number, i: number, j: number, impulse: number[]}} Event j < 0: wall −1 − j
+ */
+import { nearestImage, placeOf } from "./interpolation.js";
+import { add, normalize, scale, sub } from "./matrix.js";
+
+const FADE = 1500; // milliseconds, once time goes on
+const SETTLE = 600; // milliseconds in which a flash shrinks to a third while time stands
+const GLOW = 0.4; // what is left of it then
+const STEADY = 0.7; // instead of both, for people whom motion disturbs
+const LONG = 3; // radii: the ball that is pushed hides two of them
+const LOST = 3000; // milliseconds without the event's moment: it will not come
+const SPHERE_WALL = 1;
+const CYLINDER_WALL = 2;
+
+/**
+ * Where sphere i was touched.
+ * @param {Event} event @param {Scene} scene @param {Vec3} x of sphere i @param {Vec3 | null} other of sphere j
+ * @returns {Vec3}
+ */
+export function contact({ i, j }, scene, x, other) {
+  const period = /** @type {Vec3} */ (scene.about.period);
+  /** @type {Vec3} */ let out = [0, 0, 1]; // from the contact to the centre
+  if (other !== null) out = sub(x, nearestImage(other, x, period));
+  else {
+    const wall = scene.about.walls[-1 - j];
+    if (wall?.kind === SPHERE_WALL) out = scale(x, -1);
+    else if (wall?.kind === CYLINDER_WALL) out = [-x[0], -x[1], 0];
+    else if (wall !== undefined) out = /** @type {Vec3} */ (wall.normal);
+  }
+  return sub(x, scale(normalize(out), scene.radius[i]));
+}
+
+export class Flash {
+  constructor() {
+    this.calm = false;
+    this.strength = 0;
+    /** @type {Event | null} */ this.event = null;
+    /** @type {{from: Vec3, to: Vec3} | null} */ this.arrow = null;
+    this.since = 0; // milliseconds: when it was told, then when it was first seen
+    this.left = NaN; // when time went on
+    this.epoch = -1;
+  }
+
+  /** @param {Event} event @param {number} now milliseconds */
+  show(event, now) {
+    this.clear();
+    this.event = event;
+    this.since = now;
+  }
+
+  clear() {
+    this.event = this.arrow = null;
+    this.strength = 0;
+    this.left = NaN;
+  }
+
+  /**
+   * True if it looks different now.
+   * @param {Side} side @param {Scene} scene @param {number} now milliseconds
+   */
+  update({ first, second, t }, scene, now) {
+    const { event } = this;
+    if (event === null) return false;
+    const before = this.strength;
+    if (Math.max(event.i, event.j) >= scene.n) this.clear();
+    else if (this.arrow === null) {
+      if (t < event.t - 1e-9 * Math.max(1, Math.abs(event.t))) {
+        if (now - this.since > LOST) this.clear();
+        return false;
+      }
+      this.#start(event, first, second, t, scene, now);
+    } else if (second.epoch !== this.epoch) this.clear();
+    else if (second.playing && Number.isNaN(this.left)) this.left = now;
+    if (this.event !== null) this.strength = this.#strength(now);
+    if (this.strength === 0) this.clear();
+    return this.strength !== before;
+  }
+
+  /**
+   * @param {Event} event
+   * @param {import("./protocol.js").Keyframe} first @param {import("./protocol.js").Keyframe} second
+   * @param {number} t @param {Scene} scene @param {number} now
+   */
+  #start(event, first, second, t, scene, now) {
+    const period = /** @type {Vec3} */ (scene.about.period);
+    const { x } = placeOf(first, second, t, event.i, period);
+    const other = event.j < 0 ? null : placeOf(first, second, t, event.j, period).x;
+    const from = contact(event, scene, x, other);
+    const along = normalize(/** @type {Vec3} */ (event.impulse));
+    this.arrow = { from, to: add(from, scale(along, LONG * scene.radius[event.i])) };
+    this.since = now;
+    this.epoch = second.epoch;
+  }
+
+  /** @param {number} now */
+  #strength(now) {
+    const gone = Number.isNaN(this.left) ? 0 : (now - this.left) / FADE;
+    if (gone >= 1) return 0;
+    if (this.calm) return STEADY;
+    const settled = GLOW + (1 - GLOW) * Math.exp(-(now - this.since) / SETTLE);
+    // Below a hundredth nothing changes to the eye: then pictures need not be drawn again.
+    return Math.round(100 * settled * (1 - gone)) / 100;
+  }
+
+  /**
+   * @param {Side} side @param {Scene} scene
+   * @param {[number, number, number]} color
+   * @returns {{marks: Mark[], arrows: Arrow[]}}
+   */
+  parts({ first, second, t }, scene, color) {
+    const { event, strength } = this;
+    if (event === null || this.arrow === null) return { marks: [], arrows: [] };
+    const period = /** @type {Vec3} */ (scene.about.period);
+    const balls = event.j < 0 ? [event.i] : [event.i, event.j];
+    return {
+      marks: balls.map((k) => ({
+        side: 0,
+        x: placeOf(first, second, t, k, period).x,
+        radius: scene.radius[k],
+        color,
+        strength,
+      })),
+      arrows: [{ side: 0, ...this.arrow, color, strength }],
+    };
+  }
+}
