@@ -30,6 +30,7 @@ TABLE = {
             "readout",
             "renderer",
             "shaders",
+            "stack",
             "timeline",
             "walls",
         )
