@@ -35,7 +35,11 @@ def node(name, **environment):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+<<<<<<< HEAD
 @pytest.mark.parametrize("name", ["interpolation", "timeline", "page", "hands"])
+=======
+@pytest.mark.parametrize("name", ["interpolation", "timeline", "page", "stack"])
+>>>>>>> render
 def test_modules(name):
     node(f"{name}.test.mjs")
 

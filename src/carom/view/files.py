@@ -62,6 +62,7 @@ TABLE = {
             "slider",
             "speeds",
             "split",
+            "stack",
             "statistics",
             "store",
             "theme",
