@@ -35,11 +35,7 @@ def node(name, **environment):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-<<<<<<< HEAD
-@pytest.mark.parametrize("name", ["interpolation", "timeline", "page", "hands"])
-=======
-@pytest.mark.parametrize("name", ["interpolation", "timeline", "page", "stack"])
->>>>>>> render
+@pytest.mark.parametrize("name", ["hands", "interpolation", "page", "stack", "timeline"])
 def test_modules(name):
     node(f"{name}.test.mjs")
 

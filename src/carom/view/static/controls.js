@@ -1,21 +1,15 @@
-/** The bar, the buttons and the choices of the page; `keys.js` has the keys. */
+/** The bar and the buttons of the page; `keys.js` has the keys. */
 import { at, put } from "./dom.js";
-import { KEYS, printed, rowOf, titleOf } from "./keys.js";
+import { KEYS, printed, titleOf } from "./keys.js";
 import { multiple } from "./numbers.js";
 import { FASTEST, SLOWEST } from "./wire.js";
 
 const STEPS = 50; // of the speed slider, per power of ten
 const NOTCH = 3; // steps around 1× in which the slider catches
-const COLORS = ["energy", "speed", "collisions", "own", "species"];
-
-/** The tools' keys: they belong to the tools, their buttons stand in the bar. @type {Record<string, string>} */
-const TOOLS = { add: "a", arrows: "d", trail: "t", follow: "o" };
 
 /**
  * @typedef {object} Wishes what controls ask of the page, beside the actions of the keys
  * @property {(speed: number) => void} speed
- * @property {(mode: string) => void} color
- * @property {(wire: boolean) => void} wire
  * @property {() => void} layout the panel opened or closed
  */
 
@@ -35,20 +29,6 @@ export class Controls {
       const { action } = /** @type {HTMLElement & {dataset: {action: string}}} */ (button).dataset;
       name(button, titleOf(action));
       button.addEventListener("click", () => actions[action]());
-    }
-    for (const [id, key] of Object.entries(TOOLS)) {
-      name(at(id), `${rowOf(key)?.name} (${printed(key)})`);
-    }
-    this.#choices();
-  }
-
-  #choices() {
-    for (const input of document.querySelectorAll("input[name=color], input[name=look]")) {
-      input.addEventListener("change", () => {
-        const { name: choice, value } = /** @type {HTMLInputElement} */ (input);
-        if (choice === "color") this.wishes.color(value);
-        else this.wishes.wire(value === "wire");
-      });
     }
   }
 
@@ -80,26 +60,6 @@ export class Controls {
       this.wishes.layout();
     }
     if (document.activeElement !== this.slider) this.#show(frame.speed);
-  }
-
-  /** @param {string} mode */
-  markColor(mode) {
-    /** @type {HTMLInputElement | null} */
-    const input = document.querySelector(`input[name=color][value=${mode}]`);
-    if (input !== null) input.checked = true;
-  }
-
-  /** The colouring after `mode`, of those that are offered. @param {string} mode */
-  colorAfter(mode) {
-    const offered = COLORS.filter((each) => each !== "species" || !at("choose-species").hidden);
-    return offered[(offered.indexOf(mode) + 1) % offered.length];
-  }
-
-  /** @param {boolean} wire */
-  markWire(wire) {
-    /** @type {HTMLInputElement | null} */
-    const input = document.querySelector(`input[name=look][value=${wire ? "wire" : "solid"}]`);
-    if (input !== null) input.checked = true;
   }
 
   /** Ask for a speed. @param {number} speed */

@@ -3,15 +3,17 @@ import { Camera } from "./camera.js";
 import { Connection, takeToken } from "./connection.js";
 import { Controls, announce } from "./controls.js";
 import { at, put } from "./dom.js";
+import { toggleFullScreen, watchFullScreen } from "./fullscreen.js";
 import { Gallery } from "./gallery.js";
-import { attachPointers, cameraKey } from "./gestures.js";
+import { cameraKey } from "./gestures.js";
 import { Help } from "./help.js";
+import { Inspector } from "./inspector.js";
 import { listen } from "./keys.js";
 import { layout } from "./layout.js";
-import { drawLegend, fullOf } from "./legend.js";
 import { readLink, runsAlready } from "./link.js";
-import { dot } from "./matrix.js";
+import { Look } from "./look.js";
 import { Parameters } from "./parameters.js";
+import { Plots } from "./plots.js";
 import { say } from "./protocol.js";
 import { Readout } from "./readout.js";
 import { Renderer } from "./renderer.js";
@@ -19,43 +21,61 @@ import { keepSections } from "./sections.js";
 import { SettingsPanel } from "./settings.js";
 import { Share } from "./share.js";
 import { Comparison, around } from "./split.js";
+import { standBack } from "./standpoint.js";
 import { Theme } from "./theme.js";
 import { Timeline } from "./timeline.js";
 import { toast } from "./toast.js";
+import { attachToolbar } from "./toolbar.js";
+import { Hands } from "./tools.js";
 
 /**
  * @typedef {import("./protocol.js").Scene} Scene
  * @typedef {import("./protocol.js").Keyframe} Keyframe
- * @typedef {import("./protocol.js").ColorMode} ColorMode
  * @typedef {import("./protocol.js").Notes} Notes
  */
 
 const FINEST = 2; // pixels of the picture per pixel of the page
 const SLOWLY = 250; // milliseconds between looks at what changes slowly
+const LABELS = 76; // pixels that the numbers above the halves of the split screen take
 const NARROW = matchMedia("(max-width: 720px)");
 
 class Page {
   constructor() {
+    const send = (/** @type {string} */ message) => this.connection.send(message);
+    const fit = () => this.camera.glide(() => this.#fit());
+    this.wanted = readLink(location.hash); // the scene that the address asks for
+    const token = takeToken();
     this.canvas = /** @type {HTMLCanvasElement} */ (at("view"));
     this.renderer = new Renderer(this.canvas);
     this.camera = new Camera();
     this.timeline = new Timeline();
     this.twin = new Timeline();
-    this.readout = new Readout();
     /** @type {Scene | null} */ this.scene = null;
     /** @type {Notes["settings"] | null} */ this.settings = null;
-    this.options = { color: /** @type {ColorMode} */ ("energy"), full: 1, wire: false };
     /** @type {import("./split.js").Viewport[]} */ this.viewports = [];
-    this.stale = true; // something other than time and camera has changed
-    this.drawn = { t: NaN, camera: -1 };
+    this.stale = true; // something other than time, camera and hands has changed
+    this.drawn = { t: NaN, camera: -1, hands: -1 };
     this.before = performance.now();
     this.looked = -Infinity; // when slow things were last looked at
-    this.wanted = readLink(location.hash); // the scene that the address asks for
-    const token = takeToken();
-    this.theme = new Theme(() => (this.stale = true));
-    this.actions = this.#actions();
-    this.controls = new Controls(this.actions, this.#wishes());
-    this.#parts(token);
+    const changed = () => (this.stale = true);
+    this.theme = new Theme(changed);
+    this.look = new Look(changed);
+    this.readout = new Readout();
+    this.plots = new Plots(at("plots"));
+    this.hands = new Hands({ canvas: this.canvas, camera: this.camera, send, toast, fit });
+    this.inspector = new Inspector(at("inspector"), this.hands);
+    this.gallery = new Gallery((name) => send(say.scene(name, {})));
+    this.help = new Help();
+    const picture = () => this.renderer.toBlob();
+    this.share = new Share({ token, picture, askSource: () => send(say.source()) });
+    this.parameters = new Parameters((name, options) => send(say.scene(name, options)));
+    this.laws = new SettingsPanel(send, this.camera);
+    this.comparison = new Comparison();
+    this.actions = this.#actions(send, fit);
+    this.controls = new Controls(this.actions, {
+      speed: (value) => send(say.speed(value)),
+      layout: () => this.#resize(),
+    });
     this.#watch();
     this.connection = new Connection(token, {
       scene: (scene) => this.#setScene(scene),
@@ -66,25 +86,10 @@ class Page {
     requestAnimationFrame((now) => this.#tick(now));
   }
 
-  /** @param {string} token */
-  #parts(token) {
-    const send = (/** @type {string} */ message) => this.connection.send(message);
-    this.gallery = new Gallery((name) => send(say.scene(name, {})));
-    this.help = new Help();
-    this.share = new Share({
-      token,
-      picture: () => this.renderer.toBlob(),
-      askSource: () => send(say.source()),
-    });
-    this.parameters = new Parameters((name, options) => send(say.scene(name, options)));
-    this.settingsPanel = new SettingsPanel(send, this.camera);
-    this.comparison = new Comparison();
-    attachPointers(this.canvas, this.camera);
-  }
-
   /** Listen to the window. */
   #watch() {
-    listen(this.actions, () => false, (event) => cameraKey(event, this.camera));
+    attachToolbar(this.hands);
+    listen(this.actions, (event) => this.hands.key(event), (event) => cameraKey(event, this.camera));
     keepSections(at("panel"));
     const arrange = () => {
       at(NARROW.matches ? "panel-top" : "actions").prepend(at("extras"));
@@ -93,17 +98,16 @@ class Page {
     arrange();
     NARROW.addEventListener("change", arrange);
     new ResizeObserver(() => this.#resize()).observe(this.canvas);
-    document.addEventListener("fullscreenchange", () => {
-      const full = document.fullscreenElement !== null;
-      at("fullscreen").setAttribute("aria-pressed", String(full));
-    });
+    watchFullScreen(at("fullscreen"));
     this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     this.canvas.addEventListener("webglcontextrestored", () => location.reload());
   }
 
-  /** @returns {import("./keys.js").Actions} */
-  #actions() {
-    const send = (/** @type {string} */ message) => this.connection.send(message);
+  /**
+   * @param {(message: string) => void} send @param {() => void} fit
+   * @returns {import("./keys.js").Actions}
+   */
+  #actions(send, fit) {
     return {
       toggle: () => send(this.timeline.newest?.playing === false ? say.play() : say.pause()),
       step: () => send(say.step()),
@@ -113,29 +117,23 @@ class Page {
       slower: () => this.controls.shift(-1),
       faster: () => this.controls.shift(1),
       normal: () => this.controls.ask(1),
-      wire: () => this.#setWire(!this.options.wire),
-      nextColor: () => this.#setColor(/** @type {ColorMode} */ (this.controls.colorAfter(this.options.color))),
-      fit: () => this.#fit(),
+      wire: () => this.look.setWire(!this.look.wire),
+      nextColor: () => this.look.nextColor(),
+      fit,
       compare: () => send(say.compare(!this.settings?.comparing)),
       fullscreen: () => void toggleFullScreen(),
       gallery: () => void this.gallery.open(this.scene?.about.origin?.name ?? null),
       panel: () => this.controls.openPanel(at("panel").hidden),
       settings: () => this.#openSettings(),
-      share: () => this.share.open(this.scene?.about.title || "carom", this.scene?.about.origin ?? null),
+      share: () => this.share.open(this.#title, this.scene?.about.origin ?? null),
       theme: () => this.#nextTheme(),
       help: () => this.help.open(),
       leave: () => this.#leave(),
     };
   }
 
-  /** @returns {import("./controls.js").Wishes} */
-  #wishes() {
-    return {
-      speed: (value) => this.connection.send(say.speed(value)),
-      color: (mode) => this.#setColor(/** @type {ColorMode} */ (mode)),
-      wire: (wire) => this.#setWire(wire),
-      layout: () => this.#resize(),
-    };
+  get #title() {
+    return this.scene?.about.title || "carom";
   }
 
   #openSettings() {
@@ -170,15 +168,16 @@ class Page {
     // Another number of balls in the same scene is no reason to change its colours.
     const other = fresh && (about.origin === null || before?.about.origin?.name !== about.origin.name);
     if (fresh) this.camera.stand(/** @type {[number, number, number]} */ (about.gravity));
-    const title = about.title || "carom";
+    const title = this.#title;
     put(at("title"), title);
     document.title = title === "carom" ? title : `${title} · carom`;
     at("view").setAttribute("aria-label", `${title}: ${scene.n} spheres in three dimensions`);
-    at("choose-species").hidden = new Set(scene.species).size < 2;
     this.parameters.setOrigin(about.origin);
-    this.settingsPanel.setScene(scene, fresh);
-    if (other) this.#setWire(about.wire);
-    this.#setColor(other ? about.color : this.options.color);
+    this.laws.setScene(scene, fresh);
+    this.look.setScene(scene, other);
+    this.hands.setScene(scene);
+    this.plots.setScene(scene);
+    if (other) this.#resize();
     if (other || (fresh && !this.camera.moved)) this.#fit();
     this.#obeyAddress();
     this.stale = true;
@@ -187,6 +186,7 @@ class Page {
   /** @param {Keyframe} frame */
   #take(frame) {
     if (frame.scene !== this.scene?.number) return;
+    this.plots.push(frame, this.theme.name);
     if (frame.twin) {
       this.twin.push(frame);
       return;
@@ -200,26 +200,26 @@ class Page {
   #hear(note) {
     if (note.failure !== undefined) this.#say("failure", note.failure);
     if (note.settings !== undefined) this.#setSettings(note.settings);
+    if (note.event !== undefined) this.hands.showEvent(note.event);
+    if (note.walls !== undefined) this.plots.walls(note.walls);
     if (note.source !== undefined) this.share.setSource(note.source);
     if (note.catalogue !== undefined) {
       this.gallery.setCatalogue(note.catalogue);
       this.parameters.setCatalogue(note.catalogue);
-      this.#obeyAddress();
     }
     if (note.role !== undefined) document.body.dataset.role = note.role;
     if (note.refused !== undefined) {
       toast(note.refused);
-      this.settingsPanel.revert();
+      this.laws.revert();
       this.parameters.revert();
     }
   }
 
   /** Load the scene that the link asked for, once, unless it runs already. */
   #obeyAddress() {
-    if (this.wanted === null || this.scene === null) return;
     const { wanted } = this;
     this.wanted = null;
-    if (runsAlready(wanted, this.scene.about.origin)) return;
+    if (wanted === null || runsAlready(wanted, this.scene?.about.origin ?? null)) return;
     this.connection.send(say.scene(wanted.name, wanted.options));
   }
 
@@ -227,11 +227,11 @@ class Page {
   #setSettings(settings) {
     const before = this.settings?.comparing ?? false;
     this.settings = settings;
-    this.settingsPanel.show(settings);
-    at("compare").setAttribute("aria-pressed", String(settings.comparing));
+    this.laws.show(settings);
     const loses = Math.min(settings.restitution, settings.wall_restitution ?? 1) < 1;
     document.body.dataset.loses = String(loses);
     if (settings.comparing === before) return;
+    at("compare").setAttribute("aria-pressed", String(settings.comparing));
     this.twin.clear();
     this.comparison.show(settings.comparing);
     announce(settings.comparing ? "Exact and ticks side by side" : "One picture");
@@ -240,37 +240,7 @@ class Page {
 
   /** Look at everything, the way the scene asks for. */
   #fit() {
-    if (this.scene === null) return;
-    const { camera } = this.scene.about;
-    const { bounds, faces } = this.renderer.walls;
-    this.camera.azimuth = -0.42;
-    this.camera.height = 0.3;
-    // From the gas's side of a plane that stands alone.
-    const behind = faces.some((face) => face.fade > 0 && dot(face.normal, this.camera.axes.back) < 0);
-    if (behind) this.camera.azimuth *= -1;
-    this.camera.fit(bounds);
-    if (camera !== null) {
-      /** @typedef {[number, number, number]} Vec3 */
-      this.camera.look(/** @type {Vec3} */ (camera.position), /** @type {Vec3} */ (camera.target));
-    }
-  }
-
-  /** @param {ColorMode} mode */
-  #setColor(mode) {
-    this.options.color = mode;
-    this.controls.markColor(mode);
-    if (this.scene !== null) {
-      this.options.full = fullOf(mode, this.scene, this.timeline.newest?.counts);
-      drawLegend(at("legend"), mode, this.options.full, this.scene);
-    }
-    this.stale = true;
-  }
-
-  /** @param {boolean} wire */
-  #setWire(wire) {
-    this.options.wire = wire;
-    this.controls.markWire(wire);
-    this.stale = true;
+    if (this.scene !== null) standBack(this.camera, this.renderer.walls, this.scene.about);
   }
 
   #resize() {
@@ -279,23 +249,22 @@ class Page {
     const ratio = Math.min(devicePixelRatio, FINEST);
     this.canvas.width = Math.round(width * ratio);
     this.canvas.height = Math.round(height * ratio);
-    const panel = at("panel");
-    const covered = !panel.hidden;
+    const covered = !at("panel").hidden;
     const box = (/** @type {string} */ id) => at(id).getBoundingClientRect();
     const split = this.settings?.comparing === true;
     const top = box("heading").bottom;
-    const arranged = layout({
+    const { viewports, size, insets } = layout({
       width,
       height,
       right: covered && !NARROW.matches ? box("panel").left : width,
       bottom: covered && NARROW.matches ? box("panel").top : box("bar").top,
       top,
-      labels: split ? top + 64 : 0,
+      labels: split ? top + LABELS : 0,
       narrow: NARROW.matches,
     });
-    this.viewports = arranged.viewports;
-    if (split) this.comparison.arrange(arranged.viewports, top);
-    this.camera.resize(arranged.size.width, arranged.size.height, arranged.insets);
+    this.viewports = viewports;
+    if (split) this.comparison.arrange(viewports, top);
+    this.camera.resize(size.width, size.height, insets);
     if (!this.camera.moved) this.#fit();
     this.stale = true;
   }
@@ -324,54 +293,50 @@ class Page {
     this.connection.returnCredit();
     if (pair === null || this.scene === null) return;
     const { t } = this.timeline;
+    const sides = this.#sides(pair, t);
+    this.hands.setSides(sides);
     this.readout.show(t, now);
-    if (now - this.looked > SLOWLY) this.#look(now);
-    const { version } = this.camera;
-    if (!this.stale && t === this.drawn.t && version === this.drawn.camera) return;
-    this.renderer.draw(this.#picture(pair, t));
-    this.drawn = { t, camera: version };
+    this.plots.show(now);
+    if (now - this.looked > SLOWLY) this.#glance(now);
+    const next = { t, camera: this.camera.version, hands: this.hands.version };
+    const { drawn } = this;
+    const same = t === drawn.t && next.camera === drawn.camera && next.hands === drawn.hands;
+    if (same && !this.stale) return;
+    this.renderer.draw(this.#picture(sides));
+    this.drawn = next;
     this.stale = false;
   }
 
+  /** @param {[Keyframe, Keyframe]} pair @param {number} t */
+  #sides([first, second], t) {
+    const sides = [{ first, second, t, viewport: this.viewports[0] }];
+    const beside = this.viewports.length > 1 ? around(this.twin.keyframes, t) : null;
+    if (beside !== null) {
+      sides.push({ first: beside[0], second: beside[1], t, viewport: this.viewports[1] });
+    }
+    return sides;
+  }
+
+  /** @param {import("./tools.js").Side[]} sides @returns {import("./renderer.js").Picture} */
+  #picture(sides) {
+    const { marks, arrows, trails, ghost } = this.hands.overlay();
+    const { color, full, wire } = this.look;
+    const options = { color, full, wire, theme: this.theme.name, arrows: this.hands.isOn("arrows") };
+    return { sides, camera: this.camera, options, marks, arrows, trails, ghost };
+  }
+
   /** What changes slowly. @param {number} now */
-  #look(now) {
+  #glance(now) {
     this.looked = now;
-    this.settingsPanel.turnCompass();
-    const scene = /** @type {Scene} */ (this.scene);
+    this.laws.gravity.turnCompass();
+    this.hands.theme = this.theme.name;
+    const chosen = this.hands.selected !== null || this.hands.isOn("add");
+    at("section-inspector").hidden = !chosen;
     const { newest } = this.timeline;
+    if (newest !== undefined) this.look.watch(newest.counts);
     if (this.settings?.comparing) {
       this.comparison.update([newest, this.twin.newest], this.settings.tick, now);
     }
-    if (this.options.color !== "collisions") return;
-    const full = fullOf("collisions", scene, newest?.counts);
-    if (full !== this.options.full) this.#setColor("collisions");
-  }
-
-  /** @param {[Keyframe, Keyframe]} pair @param {number} t @returns {import("./renderer.js").Picture} */
-  #picture([first, second], t) {
-    const sides = [{ first, second, t, viewport: this.viewports[0] }];
-    const beside = around(this.twin.keyframes, t);
-    if (this.viewports.length > 1 && beside !== null) {
-      sides.push({ first: beside[0], second: beside[1], t, viewport: this.viewports[1] });
-    }
-    return {
-      sides,
-      camera: this.camera,
-      options: { ...this.options, theme: this.theme.name, arrows: false },
-      marks: [],
-      arrows: [],
-      trails: [],
-      ghost: null,
-    };
-  }
-}
-
-async function toggleFullScreen() {
-  try {
-    if (document.fullscreenElement !== null) await document.exitFullscreen();
-    else await document.documentElement.requestFullscreen();
-  } catch {
-    toast("This browser does not let the page fill the screen.");
   }
 }
 
