@@ -35,7 +35,7 @@ def node(name, **environment):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("name", ["interpolation", "timeline", "page"])
+@pytest.mark.parametrize("name", ["interpolation", "timeline", "page", "statistics", "plots"])
 def test_modules(name):
     node(f"{name}.test.mjs")
 
