@@ -35,7 +35,11 @@ def node(name, **environment):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+<<<<<<< HEAD
 @pytest.mark.parametrize("name", ["hands", "interpolation", "page", "stack", "timeline"])
+=======
+@pytest.mark.parametrize("name", ["interpolation", "timeline", "page", "statistics", "plots"])
+>>>>>>> plots
 def test_modules(name):
     node(f"{name}.test.mjs")
 

@@ -40,11 +40,13 @@ export function ticks(low, high, wanted) {
   return { values, step };
 }
 
-/** The next of 1, 2, 5 times a power of ten that is not smaller. @param {number} size */
+/** The nearest of 1, 2, 5 times a power of ten. @param {number} size */
 export function roundStep(size) {
   if (!(size > 0) || !Number.isFinite(size)) return 1;
   const power = 10 ** Math.floor(Math.log10(size));
-  return ([1, 2, 5].find((factor) => factor * power >= size * (1 - 1e-9)) ?? 10) * power;
+  const part = size / power;
+  // The borders are the geometric means.
+  return (part < Math.SQRT2 ? 1 : part < Math.sqrt(10) ? 2 : part < Math.sqrt(50) ? 5 : 10) * power;
 }
 
 /** A tick's number, with the digits its neighbours need. @param {number} value @param {number} step */
@@ -82,7 +84,7 @@ export function span(columns, { zero = false, least = 0 } = {}) {
 
 const FONT = "11px system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', 'Noto Sans', sans-serif";
 const TOP = 20; // css pixels above the plot, for the label of the y axis
-const BOTTOM = 19; // below, for the numbers of the x axis
+const BOTTOM = 33; // below, for the numbers and the label of the x axis
 const RIGHT = 10;
 const FINEST = 3; // pixels of the screen per css pixel
 
@@ -114,7 +116,7 @@ export function drawChart(canvas, picture) {
   if (paper.width === 0 || paper.height === 0) return;
   const { pen, width, height, paint } = paper;
   const { x, y } = picture;
-  const yTicks = ticks(y.low, y.high, (height - TOP - BOTTOM) / 30);
+  const yTicks = ticks(y.low, y.high, (height - TOP - BOTTOM) / 34);
   const names = yTicks.values.map((value) => tickLabel(value, yTicks.step));
   const left = 8 + Math.max(12, ...names.map((name) => pen.measureText(name).width));
   const right = width - RIGHT;
@@ -133,17 +135,9 @@ export function drawChart(canvas, picture) {
   }
   pen.textBaseline = "alphabetic";
   pen.textAlign = "left";
+  pen.fillStyle = paint("--plot-text");
   pen.fillText(y.label, 1, 11);
-  const taken = pen.measureText(x.label).width + 14;
-  pen.textAlign = "right";
-  pen.fillText(x.label, right, height - 4);
-  pen.textAlign = "center";
-  for (const { at, name } of fitting(pen, x, right - left)) {
-    const half = pen.measureText(name).width / 2;
-    if (px(at) + half < right - taken && px(at) - half > 0) pen.fillText(name, px(at), height - 4);
-    pen.strokeStyle = paint("--plot-axis");
-    rule(pen, paper.sharp(px(at)), bottom, paper.sharp(px(at)), bottom + 4);
-  }
+  drawXAxis(paper, x, left, right, bottom);
 
   pen.save();
   pen.beginPath();
@@ -152,6 +146,21 @@ export function drawChart(canvas, picture) {
   if (picture.bars) drawHistogram(paper, picture.bars, px, py);
   for (const line of picture.lines) drawLine(paper, line, px, py);
   pen.restore();
+}
+
+/** Ticks, their numbers and the label below. @param {ReturnType<typeof begin>} paper @param {Axis} x @param {number} left @param {number} right @param {number} bottom */
+function drawXAxis({ pen, width, paint, sharp }, x, left, right, bottom) {
+  pen.textBaseline = "alphabetic";
+  pen.textAlign = "center";
+  pen.fillStyle = paint("--plot-text");
+  pen.strokeStyle = paint("--plot-axis");
+  pen.fillText(x.label, (left + right) / 2, bottom + 29);
+  for (const { at, name } of fitting(pen, x, right - left)) {
+    const place = left + ((at - x.low) / (x.high - x.low)) * (right - left);
+    const half = pen.measureText(name).width / 2;
+    rule(pen, sharp(place), bottom, sharp(place), bottom + 4);
+    pen.fillText(name, Math.min(place, width - half), bottom + 15);
+  }
 }
 
 /** As many ticks as have room for their numbers. @param {CanvasRenderingContext2D} pen @param {Axis} x @param {number} room */
@@ -237,7 +246,7 @@ export const barsHeight = (n) => HEAD + n * ROW + BOTTOM;
 export function drawBars(canvas, bars, { color, label, theory }) {
   const paper = begin(canvas);
   if (paper.width === 0 || paper.height === 0) return;
-  const { pen, width, height, paint } = paper;
+  const { pen, width, paint } = paper;
   const left = 12 + Math.max(...bars.map(({ name }) => pen.measureText(name).width));
   const right = width - RIGHT;
   const bottom = HEAD + bars.length * ROW;
@@ -253,19 +262,10 @@ export function drawBars(canvas, bars, { color, label, theory }) {
     pen.fillStyle = paint(color);
     pen.fillRect(left, middle - 6, Math.max(0, px(value) - left), 12);
   }
-  const axis = { low: 0, high, label };
   pen.strokeStyle = paint("--plot-axis");
   rule(pen, paper.sharp(left), HEAD, paper.sharp(left), bottom);
-  pen.textBaseline = "alphabetic";
-  pen.textAlign = "right";
-  pen.fillStyle = paint("--plot-text");
-  pen.fillText(label, right, height - 4);
-  const taken = pen.measureText(label).width + 14;
-  pen.textAlign = "center";
-  for (const { at, name } of fitting(pen, axis, right - left)) {
-    if (px(at) + pen.measureText(name).width / 2 < right - taken) pen.fillText(name, px(at), height - 4);
-    rule(pen, paper.sharp(px(at)), bottom, paper.sharp(px(at)), bottom + 4);
-  }
+  rule(pen, left, paper.sharp(bottom), right, paper.sharp(bottom));
+  drawXAxis(paper, { low: 0, high, label }, left, right, bottom);
   if (theory === null) return;
   pen.strokeStyle = paint("--plot-theory");
   pen.lineWidth = 2;

@@ -120,7 +120,7 @@ export class Plots {
 
   /** @param {Section} section */
   #drawSpeeds(section) {
-    if (this.frame === null) return section.say({ words: "No spheres yet." });
+    if (this.frame === null) return section.empty("No spheres yet.");
     const histogram = this.speeds.histogram(this.frame);
     const { width, bars, law, maxwell } = histogram;
     const { free } = this.speeds;
@@ -139,7 +139,7 @@ export class Plots {
     const peaks = lines.map(({ y }) => y.filter((part) => part < 10 / (width * bars.length)));
     drawChart(section.canvas, {
       x: { low: 0, high: width * bars.length, label },
-      y: { ...span([bars, ...peaks], { zero: true }), label: "share per unit" },
+      y: { ...span([bars, ...peaks], { zero: true }), label: "probability density" },
       bars: { width, heights: bars, color: "--plot-bars" },
       lines,
     });
@@ -154,7 +154,7 @@ export class Plots {
   #drawEnergy(section) {
     const { past } = this;
     const last = this.frame;
-    if (last === null) return section.say({ words: "Nothing measured yet." });
+    if (last === null) return section.empty("Nothing measured yet.");
     const total = past.column(TOTAL);
     const size = Math.max(...past.column(KINETIC), ...total.map(Math.abs), 0);
     const there = (/** @type {number} */ column) =>
@@ -179,7 +179,7 @@ export class Plots {
   /** @param {Section} section */
   #drawMomentum(section) {
     const { frame, scene } = this;
-    if (frame === null || scene === null) return section.say({ words: "Nothing measured yet." });
+    if (frame === null || scene === null) return section.empty("Nothing measured yet.");
     const rows = AXES.map((name, k) => ({
       column: MOMENTUM + k,
       name,
@@ -196,7 +196,7 @@ export class Plots {
         ? "Conserved: nothing pushes from outside."
         : free.length > 0
           ? `Conserved along ${free.join(" and ")}.`
-          : "Not conserved: walls, gravity or fixed spheres push.";
+          : `Not conserved: ${pushers(scene)}.`;
     section.say({ series: rows, now: length, words });
     section.describe(`Momentum over time. ${length}. ${words}`);
   }
@@ -225,7 +225,7 @@ export class Plots {
   #drawRate(section) {
     const { trace } = this.rates;
     if (this.scene?.about.collide === false) {
-      return section.say({ words: "In an ideal gas spheres pass through one another." });
+      return section.empty("In an ideal gas spheres pass through one another.");
     }
     const [x, y, error, theory] = [0, 1, 2, 3].map((column) => trace.column(column));
     const known = theory.some((part) => part >= 0);
@@ -239,17 +239,20 @@ export class Plots {
     });
     const mean = this.rates.recent();
     if (mean === null) {
-      return section.say({ words: "Counting: a rate needs 25 collisions or more.", now: "" });
+      return section.empty("Counting: a rate needs 25 collisions or more.");
     }
     const now = measured(mean.rate, mean.error);
     /** @type {Series[]} */ const series = [{ name: "counted", color: "--plot-1", value: now }];
     const expected = theory.at(-1) ?? NaN;
-    let words = "";
+    let [words, note] = ["", ""];
     if (expected > 0) {
       series.push({ name: "Enskog, bulk", color: "--plot-theory", dash: true, value: short(expected) });
-      words = `${apart(mean.rate, expected, mean.error)} Enskog's theory.`;
+      words = `${apart(mean.rate, expected, mean.error)} Enskog’s theory.`;
+      if ((this.scene?.about.walls.length ?? 0) > 0) {
+        note = "The theory is of an endless gas; walls crowd the spheres between them.";
+      }
     }
-    section.say({ series, words, now });
+    section.say({ series, words, note, now });
     section.describe(`Collisions per unit of time: ${now}. ${words}`);
   }
 
@@ -258,7 +261,7 @@ export class Plots {
     const walls = this.scene?.about.walls ?? [];
     const { pressure, theory, duration } = this.pressure ?? { pressure: [], theory: null, duration: 0 };
     if (!(duration > 0) || pressure.length !== walls.length || walls.length === 0) {
-      return section.say({ words: "Waiting for spheres to meet walls." });
+      return section.empty("Waiting for spheres to meet walls.");
     }
     const all = pressure.map((value, k) => ({ name: walls[k].name, value }));
     const bars = all.slice(0, MOST_WALLS);
@@ -276,6 +279,16 @@ export class Plots {
     const list = bars.map(({ name, value }) => `${name} ${short(value)}`).join(", ");
     section.describe(`Pressure on each wall: ${list}. ${words}`);
   }
+}
+
+/** Who changes the momentum. @param {Scene} scene */
+function pushers({ about, mass }) {
+  const all = [];
+  if (about.walls.length > 0) all.push("walls");
+  if (mass.some((part) => !Number.isFinite(part))) all.push("fixed spheres");
+  const falls = about.gravity.some((part) => part !== 0);
+  if (all.length === 0) return falls ? "gravity pulls" : "something pushes";
+  return falls ? `${all.join(" and ")} push and gravity pulls` : `${all.join(" and ")} push`;
 }
 
 /** The axis of time; before there are two moments, some time to come. @param {Trace} trace */

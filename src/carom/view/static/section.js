@@ -62,7 +62,7 @@ export class Section {
 
   /** Is it seen by anybody? */
   get open() {
-    return this.details.open && !this.details.hidden && this.canvas.clientWidth > 0;
+    return this.details.open && this.details.clientWidth > 0;
   }
 
   /** @param {number} limit milliseconds: drawn since then is soon enough */
@@ -74,12 +74,19 @@ export class Section {
   draw(now) {
     this.drawn = now;
     this.changed = false;
+    this.canvas.hidden = false;
     this.render(this);
   }
 
   /** For people who do not see the canvas. @param {string} text */
   describe(text) {
     this.canvas.setAttribute("aria-label", text.trim());
+  }
+
+  /** There is nothing to draw. @param {string} words why */
+  empty(words) {
+    this.canvas.hidden = true;
+    this.say({ words });
   }
 
   /** @param {Said} said */
@@ -89,6 +96,8 @@ export class Section {
     put(this.note, note);
     this.words.dataset.tone = tone;
     this.key.hidden = series.length === 0;
+    // Three short names stay in their columns while their numbers change.
+    this.key.toggleAttribute("data-columns", series.length === 3 && series.every((s) => s.name.length < 3));
     while (this.key.children.length > series.length) this.key.lastElementChild?.remove();
     for (const [k, entry] of series.entries()) this.#row(k, entry);
   }

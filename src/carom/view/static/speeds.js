@@ -219,8 +219,8 @@ export function verdict({ opinion, fit, samples }, spheres) {
   if (opinion === "single") return "Energy and momentum leave only one speed possible.";
   if (opinion === "collecting") return `Collecting: ${samples} of ${ENOUGH} independent speeds.`;
   const { ratio, p } = /** @type {import("./statistics.js").Fit} */ (fit);
-  const size = ratio < 10 ? ratio.toFixed(1) : ratio.toPrecision(2);
-  const numbers = `χ²/df = ${ratio < 1000 ? Number(size) : "> 1000"}, ${chance(p)}`;
+  const size = ratio < 10 ? ratio.toFixed(1) : ratio.toFixed(0);
+  const numbers = `χ²/df ${ratio < 1000 ? `= ${size}` : "> 1000"}, ${chance(p)}`;
   if (opinion === "agrees") return `Agrees with ${law}: ${numbers}.`;
   if (opinion === "doubtful") return `Hardly ${law}: ${numbers}.`;
   return `Not yet ${law}: ${numbers}.`;
