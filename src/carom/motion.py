@@ -60,6 +60,7 @@ class Account:
     withheld: float = 0.0
     overlap: float = 0.0
     drift: float = 0.0
+    missed: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,9 +177,14 @@ class Motion:
         return self._snapshot
 
     @property
-    def start(self) -> State:
-        """The state in which the first run began."""
-        return self._start.state if self._start else self.state
+    def start(self) -> Start:
+        """Where the first run began; here and now if there was none."""
+        return self._start or Start(self.state, self.surroundings, self._serial)
+
+    @property
+    def keep_events(self) -> int:
+        """How many of the newest events are held."""
+        return self._kept.limit
 
     def serial(self, index: int) -> int:
         """What stands for one sphere for ever, whatever its place in the arrays."""
@@ -219,6 +225,11 @@ class Motion:
     def max_overlap(self) -> float:
         """Largest (sigma - r)/sigma since the start."""
         return max(self._account.overlap, self._engine.max_overlap() if self._engine else 0.0)
+
+    @property
+    def missed(self) -> int:
+        """Collisions that a method of fixed steps has not seen since the start."""
+        return self._account.missed + int(getattr(self._engine, "missed", 0))
 
     @property
     def collapse(self) -> tuple[float, int, int] | None:
@@ -262,8 +273,8 @@ class Motion:
 
     def _closed(self, energy: float) -> Account:
         """The account with which another engine begins at this energy."""
-        before = self.dissipated, self.withheld, self.max_overlap, self.energy_drift
-        return Account(energy, *before)
+        errors = self.max_overlap, self.energy_drift, self.missed
+        return Account(energy, self.dissipated, self.withheld, *errors)
 
     def assign(self, name: str, index: int | slice, value: Any) -> None:
         """Replace one array, or one row of it, if the result can be run."""
@@ -307,10 +318,7 @@ class Motion:
 
     def restart(self) -> None:
         """Go back to where the first run began: spheres, surroundings, counters."""
-        self._begin(self._start or self._here())
-
-    def _here(self) -> Start:
-        return Start(self.state, self.surroundings, self._serial)
+        self._begin(self.start)
 
     def saved(self) -> Saved:
         """Save this moment for `return_to`."""
@@ -349,8 +357,7 @@ class Motion:
     ) -> Stop:
         """Run to a time or for a count; Ctrl-C and `progress` get a turn between slices."""
         self._kept.clear()
-        if self._start is None:
-            self._start = self._here()
+        self._start = self.start
         if self._engine is None:
             self._built = self.state
             self._engine = self._make_engine(self._built, self.world)
