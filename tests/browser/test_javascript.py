@@ -35,11 +35,9 @@ def node(name, **environment):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-<<<<<<< HEAD
-@pytest.mark.parametrize("name", ["hands", "interpolation", "page", "stack", "timeline"])
-=======
-@pytest.mark.parametrize("name", ["interpolation", "timeline", "page", "statistics", "plots"])
->>>>>>> plots
+@pytest.mark.parametrize(
+    "name", ["hands", "interpolation", "page", "plots", "shell", "stack", "timeline"]
+)
 def test_modules(name):
     node(f"{name}.test.mjs")
 

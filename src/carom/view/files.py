@@ -72,6 +72,7 @@ TABLE = {
             "theme",
             "timeline",
             "toast",
+            "toolbar",
             "tools",
             "traces",
             "trail",

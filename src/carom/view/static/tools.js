@@ -358,6 +358,8 @@ export class Hands {
 
   /** @param {number} x @param {number} y */
   twice(x, y) {
-    if (this.under(x, y, SLACK).i === null) this.fit();
+    const { i, side } = this.under(x, y, SLACK);
+    if (i === null) this.fit();
+    else this.select(i, side);
   }
 }
