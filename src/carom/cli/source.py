@@ -15,7 +15,7 @@ from carom.simulation import METHODS, Simulation
 #: Options of the commands themselves, so that a misspelt one gets the right suggestion.
 COMMAND_OPTIONS = (
     "until", "collisions", "events", "method", "tick", "seed", "json", "quiet",
-    "debug", "port", "no-browser", "help",
+    "debug", "port", "host", "no-browser", "help",
 )  # fmt: skip
 #: The paper shows 60 ticks per second at speed 1.
 TICKS_PER_SECOND = 60
