@@ -3,14 +3,15 @@
 import math
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom import edits, fit, mechanics
-from carom.engine import NO_LIMIT, Engine, Stop
+from carom.engine import NO_LIMIT, Engine, Resumable, Stop
+from carom.errors import InputError
 from carom.interrupts import HeldInterrupt
 from carom.rules import Smooth
 from carom.scene import Scene, Spheres
@@ -59,6 +60,32 @@ class Account:
     withheld: float = 0.0
     overlap: float = 0.0
     drift: float = 0.0
+    missed: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Saved:
+    """A moment of a `Motion`, to go back to.
+
+    `engine` is a checkpoint of an engine built from `built` in this `world`; None means that
+    the next run builds one. The big things are shared with the motion and with each other.
+    """
+
+    of: "Motion"
+    start: Start | None
+    surroundings: Surroundings
+    world: World
+    serial: Serials
+    account: Account
+    built: State
+    engine: bytes | None
+
+    @property
+    def nbytes(self) -> int:
+        """Memory held at most, in bytes."""
+        arrays = (getattr(self.built, f.name) for f in fields(self.built))
+        held = sum(a.nbytes for a in arrays if isinstance(a, np.ndarray))
+        return held + self.serial.nbytes + len(self.engine or b"")
 
 
 class EventKeeper:
@@ -127,6 +154,7 @@ class Motion:
     def _begin(self, start: Start) -> None:
         self._engine: Engine | None = None
         self._snapshot: State | None = start.state
+        self._built = start.state
         self._start: Start | None = None
         self._serial = start.serial
         self.surroundings, self.world = start.surroundings, start.surroundings.world()
@@ -149,9 +177,14 @@ class Motion:
         return self._snapshot
 
     @property
-    def start(self) -> State:
-        """The state in which the first run began."""
-        return self._start.state if self._start else self.state
+    def start(self) -> Start:
+        """Where the first run began; here and now if there was none."""
+        return self._start or Start(self.state, self.surroundings, self._serial)
+
+    @property
+    def keep_events(self) -> int:
+        """How many of the newest events are held."""
+        return self._kept.limit
 
     def serial(self, index: int) -> int:
         """What stands for one sphere for ever, whatever its place in the arrays."""
@@ -194,6 +227,11 @@ class Motion:
         return max(self._account.overlap, self._engine.max_overlap() if self._engine else 0.0)
 
     @property
+    def missed(self) -> int:
+        """Collisions that a method of fixed steps has not seen since the start."""
+        return self._account.missed + int(getattr(self._engine, "missed", 0))
+
+    @property
     def collapse(self) -> tuple[float, int, int] | None:
         """(time, i, j) of an inelastic collapse that ended the last run."""
         return self._engine.collapse if self._engine else None
@@ -224,14 +262,19 @@ class Motion:
         serial: Serials | None = None,
     ) -> None:
         """Go on from another state, or in other surroundings, or with other spheres."""
-        before = self.dissipated, self.withheld, self.max_overlap, self.energy_drift
-        self._engine, self._snapshot = None, state
+        there = self.world if surroundings is None else surroundings.world()
+        # Energy that a change brings is given, so the drift goes on counting errors only.
+        self._account = self._closed(mechanics.energy(state, there))
+        self._engine, self._snapshot, self.world = None, state, there
         if surroundings is not None:
-            self.surroundings, self.world = surroundings, surroundings.world()
+            self.surroundings = surroundings
         if serial is not None:
             self._serial = serial
-        # Energy that a change brings is given, so the drift goes on counting errors only.
-        self._account = Account(mechanics.energy(state, self.world), *before)
+
+    def _closed(self, energy: float) -> Account:
+        """The account with which another engine begins at this energy."""
+        errors = self.max_overlap, self.energy_drift, self.missed
+        return Account(energy, self.dissipated, self.withheld, *errors)
 
     def assign(self, name: str, index: int | slice, value: Any) -> None:
         """Replace one array, or one row of it, if the result can be run."""
@@ -275,10 +318,35 @@ class Motion:
 
     def restart(self) -> None:
         """Go back to where the first run began: spheres, surroundings, counters."""
-        self._begin(self._start or self._here())
+        self._begin(self.start)
 
-    def _here(self) -> Start:
-        return Start(self.state, self.surroundings, self._serial)
+    def saved(self) -> Saved:
+        """Save this moment for `return_to`."""
+        built, bits, account = self.state, None, self._account
+        if isinstance(self._engine, Resumable):
+            built, bits = self._built, self._engine.checkpoint()
+        elif self._engine is not None:
+            account = self._closed(mechanics.energy(built, self.world))
+        around = self.surroundings, self.world, self._serial
+        return Saved(self, self._start, *around, account, built, bits)
+
+    def return_to(self, saved: Saved) -> None:
+        """Go back to exactly that moment; the events of the last run are gone."""
+        if saved.of is not self:
+            msg = "this bookmark is of another simulation; return to one of this simulation's own"
+            raise InputError(msg)
+        engine: Engine | None = None
+        if saved.engine is not None:
+            same = self._built is saved.built and self.world is saved.world
+            engine = self._engine if same else None
+            engine = engine or self._make_engine(saved.built, saved.world)
+            assert isinstance(engine, Resumable)
+            engine.restore(saved.engine)
+        self._engine, self._built = engine, saved.built
+        self._snapshot = saved.built if engine is None else None
+        self._start, self._serial, self._account = saved.start, saved.serial, saved.account
+        self.surroundings, self.world = saved.surroundings, saved.world
+        self._kept.clear()
 
     def advance(
         self,
@@ -289,10 +357,10 @@ class Motion:
     ) -> Stop:
         """Run to a time or for a count; Ctrl-C and `progress` get a turn between slices."""
         self._kept.clear()
-        if self._start is None:
-            self._start = self._here()
+        self._start = self.start
         if self._engine is None:
-            self._engine = self._make_engine(self.state, self.world)
+            self._built = self.state
+            self._engine = self._make_engine(self._built, self.world)
         engine = self._engine
         pairs, walls = engine.collisions, engine.wall_collisions
         stop = Stop.SLICE

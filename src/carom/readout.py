@@ -211,6 +211,14 @@ class Readout:
         """Largest (sigma - r)/sigma since the start, of collisions and of neighbours now."""
         return self._motion.max_overlap
 
+    @property
+    def missed(self) -> int:
+        """Collisions that ``method="tick"`` has not seen since the start; 0 for exact methods.
+
+        Counted are those that exact flight from the start of each tick has within it.
+        """
+        return self._motion.missed
+
     # Sums over all spheres that are not fixed. Cost: one pass over the arrays.
 
     @property
