@@ -4,8 +4,8 @@
  * @typedef {import("./matrix.js").Vec3} Vec3
  * @typedef {import("./protocol.js").Scene} Scene
  * @typedef {import("./tools.js").Side} Side
- * @typedef {import("./overlay.js").Arrow} Arrow
- * @typedef {import("./overlay.js").Mark} Mark
+ * @typedef {import("./annotations.js").Arrow} Arrow
+ * @typedef {import("./annotations.js").Mark} Mark
  * @typedef {{t: number, i: number, j: number, impulse: number[]}} Event j < 0: wall −1 − j
  */
 import { nearestImage, placeOf } from "./interpolation.js";
