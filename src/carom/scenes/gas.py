@@ -15,7 +15,7 @@ from carom.walls import Box
 @scene
 def gas(
     n: Annotated[int, Slider(10, 5000, log=True)] = 500,
-    packing_fraction: Annotated[float, Slider(0.001, 0.3, log=True)] = 0.05,
+    packing_fraction: Annotated[float, Slider(0.001, 0.25, log=True)] = 0.05,
     speed: Annotated[float, Slider(0.1, 5)] = 1.0,
     seed: int = 1,
 ) -> Scene:

@@ -17,7 +17,7 @@ def giant(
     n: Annotated[int, Slider(10, 5000, log=True)] = 1000,
     radius_ratio: Annotated[float, Slider(1, 20)] = 8.0,
     mass_ratio: Annotated[float, Slider(1, 1000, log=True)] = 50.0,
-    packing_fraction: Annotated[float, Slider(0.01, 0.3)] = 0.1,
+    packing_fraction: Annotated[float, Slider(0.01, 0.2)] = 0.1,
     seed: int = 1,
 ) -> Scene:
     """Brownian motion: one giant is pushed about by many small spheres in a box.
