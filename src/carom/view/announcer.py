@@ -86,9 +86,7 @@ class Announcer:
             self._note("event", stage.event)
         self._read_walls(clock, playing)
         self._number += 1
-        return Snapshot(
-            self._number, frames, self._scene_number, self._scene, dict(self._notes)
-        )
+        return Snapshot(self._number, frames, self._scene_number, self._scene, dict(self._notes))
 
     def source(self) -> dict[str, str]:
         """The simulation as text, or the reason why not."""

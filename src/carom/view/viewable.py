@@ -117,7 +117,7 @@ class Viewable(Protocol):
         """Take a sphere away."""
 
     def bookmark(self) -> Any:
-        """This moment, to return to."""
+        """Mark now, to return to."""
 
     def return_to(self, bookmark: Any) -> None:
         """Go back to a bookmark's moment."""
