@@ -16,7 +16,7 @@ from carom.simulation import Simulation
 #: Options of the commands themselves, so that a misspelt one gets the right suggestion.
 COMMAND_OPTIONS = (
     "until", "collisions", "events", "method", "tick", "seed", "json", "quiet",
-    "debug", "port", "no-browser", "help",
+    "debug", "port", "host", "no-browser", "help",
 )  # fmt: skip
 
 
