@@ -31,8 +31,8 @@ export class GravityPad {
     const report = () => this.#report();
     const angle = (/** @type {string} */ name, /** @type {number} */ high) =>
       new Slider({ name, range: { low: 0, high, whole: true }, changed: report });
-    this.tilt = angle("Tilt from down, degrees", 180);
-    this.heading = angle("Heading, degrees", 360);
+    this.tilt = angle("Tilt from down, °", 180);
+    this.heading = angle("Heading, °", 360);
     this.tilt.force(0);
     this.heading.force(0);
     this.strength = this.#strength(1);

@@ -12,7 +12,7 @@ const EVERY = 150; // milliseconds between changes
  * Two equal viewports in the free part of the canvas, side by side or one above the other.
  * @param {number} width @param {number} height of the free part
  * @param {boolean} stacked
- * @returns {[Viewport, Viewport]}
+ * @returns {Viewport[]}
  */
 export function halves(width, height, stacked) {
   const size = stacked
@@ -52,7 +52,7 @@ export class Comparison {
     document.body.dataset.split = String(on);
   }
 
-  /** @param {[Viewport, Viewport]} viewports @param {number} top pixels that the heading takes */
+  /** @param {Viewport[]} viewports @param {number} top pixels that the heading takes */
   arrange(viewports, top) {
     viewports.forEach((viewport, k) => {
       const { style } = this.sides[k].place;
