@@ -240,6 +240,9 @@ export class Hands {
       return false;
     }
     switch (event.key.toLowerCase()) {
+      case "j":
+        this.selectNext(event.shiftKey ? -1 : 1);
+        return true;
       case "a":
         this.toggle("add");
         return true;
