@@ -11,10 +11,13 @@
  * @typedef {object} Moment one sphere in one keyframe
  * @property {Vec3} x
  * @property {Vec3} v
- * @property {number} count its count byte
+ * @property {number} count impulses so far in 31 bits; the top bit says that gravity does not act
+ * @typedef {import("./protocol.js").Keyframe} Keyframe
  */
 import { add, dot, scale, sub } from "./matrix.js";
-import { STILL } from "./protocol.js";
+
+/** Does gravity act? The top bit of a 32-bit number is its sign here. @param {number} count */
+const still = (count) => (count | 0) < 0;
 
 /**
  * Shift x by whole boxes to the image nearest to a place.
@@ -41,17 +44,18 @@ export function wrap(x, period) {
 const mix = (a, b, s) => add(scale(a, 1 - s), scale(b, s));
 
 /**
- * Place and squared speed at s ∈ [0, h] after the first of two keyframes.
+ * Place, velocity and squared speed at s ∈ [0, h] after the first of two keyframes. Where nothing
+ * better is known energies are mixed, not velocities, so v2 is not always the square of v.
  * @param {Moment} a @param {Moment} b
  * @param {number} s @param {number} h
  * @param {Vec3} gravity @param {Vec3} period
- * @returns {{x: Vec3, v2: number}}
+ * @returns {{x: Vec3, v: Vec3, v2: number}}
  */
 export function motion(a, b, s, h, gravity, period) {
-  if (!(h > 0)) return { x: b.x, v2: dot(b.v, b.v) };
-  const hits = (b.count - a.count) & 127;
-  if (hits > 1 || (a.count & STILL) !== (b.count & STILL)) return blend(a, b, s, h, period);
-  const g = a.count & STILL ? /** @type {Vec3} */ ([0, 0, 0]) : gravity;
+  if (!(h > 0)) return { x: b.x, v: b.v, v2: dot(b.v, b.v) };
+  const hits = (b.count - a.count) & 0x7fffffff;
+  if (hits > 1 || still(a.count) !== still(b.count)) return blend(a, b, s, h, period);
+  const g = still(a.count) ? /** @type {Vec3} */ ([0, 0, 0]) : gravity;
   const forward = add(a.x, add(scale(a.v, s), scale(g, 0.5 * s * s)));
   const ahead = add(a.v, scale(g, s));
   const behind = sub(b.v, scale(g, h - s));
@@ -62,7 +66,7 @@ export function motion(a, b, s, h, gravity, period) {
   if (hits === 0) {
     const x1 = nearestImage(b.x, add(a.x, add(scale(a.v, h), fall)), period);
     const x = wrap(mix(forward, backward(x1), s / h), period);
-    return { x, v2: mixed(ahead, behind, s / h) };
+    return { x, v: mix(ahead, behind, s / h), v2: mixed(ahead, behind, s / h) };
   }
   const kick = sub(a.v, w1);
   const strength = dot(kick, kick);
@@ -76,11 +80,11 @@ export function motion(a, b, s, h, gravity, period) {
     if (strength > 0) crossing = Math.min(h, Math.max(0, dot(d, kick) / strength));
   }
   return s < crossing
-    ? { x: wrap(forward, period), v2: dot(ahead, ahead) }
-    : { x: wrap(backward(x1), period), v2: dot(behind, behind) };
+    ? { x: wrap(forward, period), v: ahead, v2: dot(ahead, ahead) }
+    : { x: wrap(backward(x1), period), v: behind, v2: dot(behind, behind) };
 }
 
-/** @param {Vec3} v @param {Vec3} w @param {number} s energies are mixed, not velocities */
+/** @param {Vec3} v @param {Vec3} w @param {number} s */
 const mixed = (v, w, s) => (1 - s) * dot(v, v) + s * dot(w, w);
 
 /**
@@ -89,5 +93,24 @@ const mixed = (v, w, s) => (1 - s) * dot(v, v) + s * dot(w, w);
 function blend(a, b, s, h, period) {
   const end = add(a.x, scale(add(a.v, b.v), 0.5 * h));
   const x1 = nearestImage(b.x, end, period);
-  return { x: wrap(mix(a.x, x1, s / h), period), v2: mixed(a.v, b.v, s / h) };
+  const x = wrap(mix(a.x, x1, s / h), period);
+  return { x, v: mix(a.v, b.v, s / h), v2: mixed(a.v, b.v, s / h) };
+}
+
+/** Sphere `i` of a keyframe. @param {Keyframe} keyframe @param {number} i @returns {Moment} */
+function momentOf({ position: x, velocity: v, counts }, i) {
+  const k = 3 * i;
+  return { x: [x[k], x[k + 1], x[k + 2]], v: [v[k], v[k + 1], v[k + 2]], count: counts[i] };
+}
+
+/**
+ * Where sphere `i` is at the time `t`, between two keyframes, and how fast.
+ * @param {Keyframe} first @param {Keyframe} second
+ * @param {number} t @param {number} i @param {number[]} period 0 on axes that are not periodic
+ */
+export function placeOf(first, second, t, i, period) {
+  const h = second.t - first.t;
+  const s = Math.min(Math.max(t - first.t, 0), h);
+  const [a, b] = [momentOf(first, i), momentOf(second, i)];
+  return motion(a, b, s, h, second.gravity, /** @type {Vec3} */ (period));
 }
