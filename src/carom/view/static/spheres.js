@@ -282,3 +282,8 @@ export class Spheres {
 
 const NO = { int: 0 };
 const YES = { int: 1 };
+// Ranges of coverage: everything, whole pixels alone, pixels mostly covered, edges alone.
+const ANY = [1e-3, 2];
+const WHOLE = [1, 2];
+const HALF = [0.5, 2];
+const EDGES = [1e-3, 0.999];
