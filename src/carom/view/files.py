@@ -21,6 +21,7 @@ TABLE = {
         f"/{name}.js": (f"{name}.js", JS)
         for name in (
             "main",
+            "annotations",
             "camera",
             "chart",
             "clipboard",
@@ -49,7 +50,6 @@ TABLE = {
             "matrix",
             "newball",
             "numbers",
-            "overlay",
             "parameters",
             "pick",
             "plots",

@@ -4,8 +4,8 @@
  * @typedef {import("./matrix.js").Vec3} Vec3
  * @typedef {import("./protocol.js").Scene} Scene
  * @typedef {import("./tools.js").Side} Side
- * @typedef {import("./overlay.js").Arrow} Arrow
- * @typedef {import("./overlay.js").Mark} Mark
+ * @typedef {import("./annotations.js").Arrow} Arrow
+ * @typedef {import("./annotations.js").Mark} Mark
  * @typedef {{t: number, i: number, j: number, impulse: number[]}} Event j < 0: wall −1 − j
  */
 import { nearestImage, placeOf } from "./interpolation.js";
@@ -15,7 +15,9 @@ const FADE = 1500; // milliseconds, once time goes on
 const SETTLE = 600; // milliseconds in which a flash shrinks to a third while time stands
 const GLOW = 0.4; // what is left of it then
 const STEADY = 0.7; // instead of both, for people whom motion disturbs
-const LONG = 3; // radii: the ball that is pushed hides two of them
+const LONG = 3.4; // radii: the ball that is pushed hides two of them
+const RIPPLE = 700; // milliseconds in which a second ring runs outwards
+const WIDE = 1.1; // radii that it runs
 const LOST = 3000; // milliseconds without the event's moment: it will not come
 const SPHERE_WALL = 1;
 const CYLINDER_WALL = 2;
@@ -46,6 +48,7 @@ export class Flash {
     /** @type {{from: Vec3, to: Vec3} | null} */ this.arrow = null;
     this.since = 0; // milliseconds: when it was told, then when it was first seen
     this.left = NaN; // when time went on
+    this.now = 0;
     this.epoch = -1;
   }
 
@@ -70,6 +73,7 @@ export class Flash {
     const { event } = this;
     if (event === null) return false;
     const before = this.strength;
+    this.now = now;
     if (Math.max(event.i, event.j) >= scene.n) this.clear();
     else if (this.arrow === null) {
       if (t < event.t - 1e-9 * Math.max(1, Math.abs(event.t))) {
@@ -79,9 +83,19 @@ export class Flash {
       this.#start(event, first, second, t, scene, now);
     } else if (second.epoch !== this.epoch) this.clear();
     else if (second.playing && Number.isNaN(this.left)) this.left = now;
-    if (this.event !== null) this.strength = this.#strength(now);
+    if (this.event !== null) this.strength = this.#glow;
     if (this.strength === 0) this.clear();
-    return this.strength !== before;
+    return this.strength !== before || this.#ripple < 1;
+  }
+
+  /** How far the second ring has run, from 0 to 1. */
+  get #ripple() {
+    return this.calm || this.arrow === null ? 1 : Math.min(1, (this.now - this.since) / RIPPLE);
+  }
+
+  /** How much of the flash is left since time went on. */
+  get #rest() {
+    return Number.isNaN(this.left) ? 1 : Math.max(0, 1 - (this.now - this.left) / FADE);
   }
 
   /**
@@ -100,14 +114,11 @@ export class Flash {
     this.epoch = second.epoch;
   }
 
-  /** @param {number} now */
-  #strength(now) {
-    const gone = Number.isNaN(this.left) ? 0 : (now - this.left) / FADE;
-    if (gone >= 1) return 0;
-    if (this.calm) return STEADY;
-    const settled = GLOW + (1 - GLOW) * Math.exp(-(now - this.since) / SETTLE);
+  get #glow() {
+    if (this.calm) return this.#rest > 0 ? STEADY : 0;
+    const settled = GLOW + (1 - GLOW) * Math.exp(-(this.now - this.since) / SETTLE);
     // Below a hundredth nothing changes to the eye: then pictures need not be drawn again.
-    return Math.round(100 * settled * (1 - gone)) / 100;
+    return Math.round(100 * settled * this.#rest) / 100;
   }
 
   /**
@@ -119,16 +130,18 @@ export class Flash {
     const { event, strength } = this;
     if (event === null || this.arrow === null) return { marks: [], arrows: [] };
     const period = /** @type {Vec3} */ (scene.about.period);
-    const balls = event.j < 0 ? [event.i] : [event.i, event.j];
-    return {
-      marks: balls.map((k) => ({
-        side: 0,
-        x: placeOf(first, second, t, k, period).x,
-        radius: scene.radius[k],
-        color,
-        strength,
-      })),
-      arrows: [{ side: 0, ...this.arrow, color, strength }],
-    };
+    const ripple = this.#ripple;
+    /** @type {Mark[]} */ const marks = [];
+    for (const k of event.j < 0 ? [event.i] : [event.i, event.j]) {
+      const { x } = placeOf(first, second, t, k, period);
+      const radius = scene.radius[k];
+      marks.push({ side: 0, x, radius, color, strength });
+      if (ripple === 1) continue;
+      const wide = radius * (1 + WIDE * ripple);
+      marks.push({ side: 0, x, radius: wide, color, strength: (1 - ripple) ** 2 });
+    }
+    const { from, to } = this.arrow;
+    const end = add(from, scale(sub(to, from), this.calm ? 1 : this.#rest));
+    return { marks, arrows: [{ side: 0, from, to: end, color, strength }] };
   }
 }

@@ -53,8 +53,8 @@ export class Inspector {
     this.read = -Infinity; // milliseconds
     this.version = -1;
     this.title = make("p", { class: "sphere-title", role: "status" });
-    const previous = this.#button("‹", "Previous sphere", () => hands.selectNext(-1));
-    const next = this.#button("›", "Next sphere", () => hands.selectNext(1));
+    const previous = this.#button("‹", "Previous sphere (shift J)", () => hands.selectNext(-1));
+    const next = this.#button("›", "Next sphere (J)", () => hands.selectNext(1));
     this.hint = make("p", { class: "note" }, "Click a sphere in the picture, or go through them here.");
     /** @type {Record<string, HTMLElement[]>} */ this.cells = {};
     this.numbers = this.#numbers();
@@ -87,7 +87,7 @@ export class Inspector {
 
   /** @param {string} text @param {string} name @param {() => void} action */
   #button(text, name, action) {
-    const button = make("button", { type: "button", title: name, "aria-label": name }, text);
+    const button = make("button", { type: "button", title: name, "aria-label": name.replace(/ \(.*/, "") }, text);
     button.addEventListener("click", () => {
       action();
       this.show(performance.now(), true);

@@ -95,7 +95,7 @@ function meeting(a, b, h, g, period) {
  * @returns {{s: number, x: Vec3} | null} s after the first keyframe
  */
 export function crossing(a, b, h, gravity, period) {
-  const single = ((b.count - a.count) & 127) === 1 && (a.count & STILL) === (b.count & STILL);
+  const single = ((b.count - a.count) & 0x7fffffff) === 1 && (a.count & STILL) === (b.count & STILL);
   if (!single || !(h > 0)) return null;
   const { s, x } = meeting(a, b, h, a.count & STILL ? [0, 0, 0] : gravity, period);
   return { s, x };

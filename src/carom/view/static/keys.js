@@ -22,6 +22,7 @@ export const KEYS = [
   { group: "Time", keys: [","], name: "Slower", action: "slower" },
   { group: "Time", keys: ["."], name: "Faster", action: "faster" },
   { group: "Time", keys: ["1"], name: "Normal speed", action: "normal" },
+  { group: "Spheres", keys: ["j"], name: "Select the next ball; with shift, the one before", action: "hands" },
   { group: "Spheres", keys: ["a"], name: "Add a ball", action: "hands" },
   { group: "Spheres", keys: ["delete"], also: ["backspace"], name: "Delete the selected ball", action: "hands" },
   { group: "Spheres", keys: ["d"], name: "Velocity arrows", action: "hands" },

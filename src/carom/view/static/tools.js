@@ -14,7 +14,7 @@ import { attachPointers } from "./gestures.js";
 import { Handle, Label } from "./handle.js";
 import { placeOf } from "./interpolation.js";
 import { NewBall, arrowTime, reachOf } from "./newball.js";
-import { overlayOf } from "./overlay.js";
+import { annotate } from "./annotations.js";
 import { pick } from "./pick.js";
 import { say } from "./protocol.js";
 import { Trail } from "./trail.js";
@@ -133,7 +133,7 @@ export class Hands {
 
   /** What lies over the picture. */
   overlay() {
-    return overlayOf(this);
+    return annotate(this);
   }
 
   /** Place and velocity of a sphere as drawn on a side. @param {number} i @param {number} side */
@@ -240,6 +240,9 @@ export class Hands {
       return false;
     }
     switch (event.key.toLowerCase()) {
+      case "j":
+        this.selectNext(event.shiftKey ? -1 : 1);
+        return true;
       case "a":
         this.toggle("add");
         return true;

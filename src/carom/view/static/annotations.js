@@ -8,7 +8,7 @@
  * @typedef {{side: number, points: Float32Array, color: Rgb}} Path
  * @typedef {{side: number, x: Vec3, radius: number, color: Rgb}} Ghost
  * @typedef {{marks: Mark[], arrows: Arrow[], trails: Path[], ghost: Ghost | null,
- *   follow: number | null}} Overlay
+ *   follow: number | null}} Annotations
  */
 import { unpack } from "./colors.js";
 import { add, length, scale } from "./matrix.js";
@@ -18,10 +18,10 @@ const COLORS = {
   light: { selected: 0xd97a00, velocity: 0xa85800, impulse: 0xd02a1c },
 };
 
-/** @param {import("./tools.js").Hands} hands @returns {Overlay} */
-export function overlayOf(hands) {
+/** @param {import("./tools.js").Hands} hands @returns {Annotations} */
+export function annotate(hands) {
   const { scene, sides, theme } = hands;
-  /** @type {Overlay} */
+  /** @type {Annotations} */
   const overlay = { marks: [], arrows: [], trails: [], ghost: null, follow: null };
   if (scene === null || sides.length === 0) return overlay;
   selection(hands, scene, overlay);
@@ -40,7 +40,7 @@ export function overlayOf(hands) {
 /**
  * @param {import("./tools.js").Hands} hands
  * @param {import("./protocol.js").Scene} scene
- * @param {Overlay} overlay
+ * @param {Annotations} overlay
  */
 function selection(hands, scene, overlay) {
   const { selected, sides, theme } = hands;
@@ -59,7 +59,7 @@ function selection(hands, scene, overlay) {
   if (hands.following) overlay.follow = selected;
 }
 
-/** @param {Overlay} overlay @param {Vec3} from @param {Vec3} to @param {Rgb} color */
+/** @param {Annotations} overlay @param {Vec3} from @param {Vec3} to @param {Rgb} color */
 function arrow(overlay, from, to, color) {
   if (length([to[0] - from[0], to[1] - from[1], to[2] - from[2]]) === 0) return;
   overlay.arrows.push({ side: 0, from, to, color, strength: 1 });
