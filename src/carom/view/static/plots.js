@@ -51,6 +51,7 @@ export class Plots {
   /** @param {Scene} scene */
   setScene(scene) {
     const other = scene.about.key !== this.scene?.about.key;
+    if (scene.n !== this.scene?.n) this.frame = null;
     this.scene = scene;
     this.speeds.setScene(scene);
     this.enskog = enskog(scene);
@@ -77,7 +78,7 @@ export class Plots {
       this.#change();
     }
     // The tick side of a split screen has numbers of its own, which are not the physics.
-    if (frame.twin || this.scene === null || frame.n !== this.scene.n) return;
+    if (frame.twin || frame.scene !== this.scene?.number) return;
     const jump = this.jumps.happened(frame);
     if (jump) {
       this.past.forget(frame.t);
