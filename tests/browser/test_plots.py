@@ -47,7 +47,7 @@ def says(shown, name, pattern, seconds=10.0):
     """Wait until the words of a section fit a pattern; the match."""
     end = time.perf_counter() + seconds
     while True:
-        text = section(shown, name).inner_text().replace("\u202f", "")
+        text = section(shown, name).inner_text().replace("\u202f", "").replace("\u00a0", " ")
         if match := re.search(pattern, text, re.DOTALL):
             return match
         assert time.perf_counter() < end, f"{pattern!r} is not in {text!r}"
