@@ -173,14 +173,14 @@ test("speeds: equilibrium agrees, one speed for all does not, mixtures are scale
     speeds.setScene(scene);
     const good = speeds.histogram(frame(scene, random(1), 0));
     assert.equal(good.opinion, "agrees", verdict(good, 600));
-    assert.match(verdict(good, 600), /^Agrees with Maxwell–Boltzmann: χ²\/df = [\d.]+, p = 0\.\d+\.$/);
+    assert.match(verdict(good, 600), /^Agrees with Maxwell–Boltzmann: χ²\/df\s=\s[\d.]+, p\s=\s0\.\d+\.$/);
     assert.equal(good.scaled, masses(1) === 10);
     near(good.bars.reduce((sum, part) => sum + part * good.width, 0), 1, 0.01);
     const one = frame(scene, random(1), 0);
     one.velocity.forEach((_, k) => (one.velocity[k] = k % 3 === 0 && scene.mass[k / 3] < 20 ? 1 : 0));
     const bad = speeds.histogram(one);
     assert.equal(bad.opinion, "not");
-    assert.match(verdict(bad, 600), /^Not yet Maxwell–Boltzmann: .*p < 0\.001\.$/);
+    assert.match(verdict(bad, 600), /^Not yet Maxwell–Boltzmann: .*p\s<\s0\.001\.$/);
   }
 });
 

@@ -9,7 +9,7 @@ const EVERY = 250; // milliseconds between drawings of one plot
 const FRESH = 0.08; // seconds between rows: new energies come about ten times a second
 const STALE = 0.25; // seconds after which the same ones are written down again
 const MOST_WALLS = 8; // with a bar of their own
-const TINY = 1e-12; // of the energy: less is rounding, and no line of its own
+const TINY = 1e-12; // of the whole: less is rounding, and no line or number of its own
 
 /** Columns of the past. */
 const [TIME, KINETIC, POTENTIAL, LOST, TOTAL, MOMENTUM] = [0, 1, 2, 3, 4, 5];
@@ -51,6 +51,7 @@ export class Plots {
   /** @param {Scene} scene */
   setScene(scene) {
     const other = scene.about.key !== this.scene?.about.key;
+    if (scene.n !== this.scene?.n) this.frame = null;
     this.scene = scene;
     this.speeds.setScene(scene);
     this.enskog = enskog(scene);
@@ -77,7 +78,7 @@ export class Plots {
       this.#change();
     }
     // The tick side of a split screen has numbers of its own, which are not the physics.
-    if (frame.twin || this.scene === null || frame.n !== this.scene.n) return;
+    if (frame.twin || frame.scene !== this.scene?.number) return;
     const jump = this.jumps.happened(frame);
     if (jump) {
       this.past.forget(frame.t);
@@ -180,14 +181,14 @@ export class Plots {
   #drawMomentum(section) {
     const { frame, scene } = this;
     if (frame === null || scene === null) return section.empty("Nothing measured yet.");
+    // What all spheres would have if they flew the same way is the scale: a thousandth is flat.
+    const most = Math.sqrt(2 * Math.max(frame.kinetic, ...this.past.column(KINETIC)) * this.speeds.total);
     const rows = AXES.map((name, k) => ({
       column: MOMENTUM + k,
       name,
       color: `--plot-${k + 1}`,
-      value: short(frame.momentum[k]),
+      value: Math.abs(frame.momentum[k]) < TINY * most ? "0" : short(frame.momentum[k]),
     }));
-    // What all spheres would have if they flew the same way is the scale: a thousandth is flat.
-    const most = Math.sqrt(2 * Math.max(frame.kinetic, ...this.past.column(KINETIC)) * this.speeds.total);
     this.#drawPast(section, rows, "momentum", { least: most / 500 });
     const length = `|P| = ${short(Math.hypot(...frame.momentum))}`;
     const free = freeAxes(scene.about).map((k) => AXES[k]);
@@ -260,7 +261,7 @@ export class Plots {
   #drawPressure(section) {
     const walls = this.scene?.about.walls ?? [];
     const { pressure, theory, duration } = this.pressure ?? { pressure: [], theory: null, duration: 0 };
-    if (!(duration > 0) || pressure.length !== walls.length || walls.length === 0) {
+    if (pressure.length !== walls.length || !pressure.some((part) => part > 0)) {
       return section.empty("Waiting for spheres to meet walls.");
     }
     const all = pressure.map((value, k) => ({ name: walls[k].name, value }));

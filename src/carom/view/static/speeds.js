@@ -220,7 +220,7 @@ export function verdict({ opinion, fit, samples }, spheres) {
   if (opinion === "collecting") return `Collecting: ${samples} of ${ENOUGH} independent speeds.`;
   const { ratio, p } = /** @type {import("./statistics.js").Fit} */ (fit);
   const size = ratio < 10 ? ratio.toFixed(1) : ratio.toFixed(0);
-  const numbers = `χ²/df ${ratio < 1000 ? `= ${size}` : "> 1000"}, ${chance(p)}`;
+  const numbers = `χ²/df ${ratio < 1000 ? `= ${size}` : "> 1000"}, ${chance(p)}`.replace(/ ([=<>]) /g, "\u00a0$1\u00a0");
   if (opinion === "agrees") return `Agrees with ${law}: ${numbers}.`;
   if (opinion === "doubtful") return `Hardly ${law}: ${numbers}.`;
   return `Not yet ${law}: ${numbers}.`;
