@@ -36,7 +36,10 @@ def node(name, **environment):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("name", ["interpolation", "timeline", "page", "stack"])
+NAMES = sorted({path.name.split(".")[0] for path in HERE.glob("*.test.mjs")} - {"protocol"})
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_modules(name):
     node(f"{name}.test.mjs")
 

@@ -1,38 +1,82 @@
 """The page's files: a fixed table read once, so no request ever names a path on the disk."""
 
+import json
 from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
-HTML, CSS, JS, SVG = "text/html", "text/css", "text/javascript", "image/svg+xml"
+HTML, CSS, JS = "text/html", "text/css", "text/javascript"
+SVG, WEBP, JSON = "image/svg+xml", "image/webp", "application/json"
 
 #: Address of each file, its name in `static/`, its type.
 TABLE = {
     "/": ("index.html", HTML),
-    "/style.css": ("style.css", CSS),
     "/icon.svg": ("icon.svg", SVG),
+    **{
+        f"/{name}.css": (f"{name}.css", CSS)
+        for name in ("bars", "dialogs", "hands", "narrow", "panel", "plots", "style")
+    },
     **{
         f"/{name}.js": (f"{name}.js", JS)
         for name in (
             "main",
+            "annotations",
             "camera",
+            "chart",
+            "clipboard",
             "colors",
             "connection",
             "controls",
+            "dialog",
+            "dom",
+            "flash",
+            "fullscreen",
+            "gallery",
             "gestures",
             "glsl",
+            "gravity",
+            "gravitypad",
+            "handle",
+            "help",
+            "inspector",
             "interpolation",
+            "keys",
+            "later",
+            "layout",
             "legend",
+            "link",
+            "look",
             "matrix",
+            "newball",
             "numbers",
+            "parameters",
+            "pick",
+            "plots",
             "program",
             "protocol",
             "readout",
             "renderer",
+            "scales",
+            "section",
+            "sections",
+            "settings",
             "shaders",
+            "share",
+            "slider",
+            "speeds",
+            "split",
             "stack",
+            "standpoint",
+            "statistics",
+            "store",
+            "theme",
             "timeline",
+            "toast",
+            "toolbar",
+            "tools",
+            "traces",
+            "trail",
             "walls",
             "wire",
         )
@@ -50,12 +94,18 @@ class StaticFile:
 
 @cache
 def load() -> dict[str, StaticFile]:
-    """All files by address."""
+    """All files by address, and the scenes' pictures with a list of those there are."""
     folder = files("carom.view") / "static"
-    return {
+    table = {
         address: StaticFile((folder / name).read_bytes(), f"{kind}; charset=utf-8")
         for address, (name, kind) in TABLE.items()
     }
+    pictures = sorted((folder / "gallery").iterdir(), key=lambda picture: picture.name)
+    for picture in pictures:
+        table[f"/gallery/{picture.name}"] = StaticFile(picture.read_bytes(), WEBP)
+    names = json.dumps([picture.name.removesuffix(".webp") for picture in pictures])
+    table["/gallery.json"] = StaticFile(names.encode(), JSON)
+    return table
 
 
 def security_headers(hosts: Collection[str]) -> dict[str, str]:
