@@ -6,9 +6,10 @@ import { KEYS, printed } from "./keys.js";
 /** What pointers do: name, mouse, touch. */
 const POINTING = [
   ["Turn", "drag", "one finger"],
-  ["Move", "shift-drag, right drag", "two fingers"],
+  ["Move", "shift-drag", "two fingers"],
   ["Zoom", "wheel", "pinch"],
-  ["Select a sphere", "click it", "tap it"],
+  ["Select a sphere", "click", "tap"],
+  ["Show everything", "double click", "double tap"],
 ];
 
 export class Help {

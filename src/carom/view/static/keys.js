@@ -6,6 +6,7 @@
  * @property {string} group
  * @property {string[]} keys as `KeyboardEvent.key` in small letters
  * @property {string} name what it does
+ * @property {string[]} [also] keys of neighbours, which do the same and are not printed
  * @property {string} action a name in `Actions`; "hands" and "camera" pass the event on
  *
  * @typedef {Record<string, () => void>} Actions
@@ -14,8 +15,8 @@
 /** @type {Row[]} */
 export const KEYS = [
   { group: "Time", keys: [" "], name: "Pause or play", action: "toggle" },
-  { group: "Time", keys: ["n", "]"], name: "To the next collision", action: "step" },
-  { group: "Time", keys: ["b", "["], name: "Back to the collision before", action: "back" },
+  { group: "Time", keys: ["n", "]"], name: "On to the next collision", action: "step" },
+  { group: "Time", keys: ["b", "["], name: "Back one collision", action: "back" },
   { group: "Time", keys: ["r"], name: "Restart", action: "restart" },
   { group: "Time", keys: ["v"], name: "Reverse time", action: "reverse" },
   { group: "Time", keys: [","], name: "Slower", action: "slower" },
@@ -23,16 +24,16 @@ export const KEYS = [
   { group: "Time", keys: ["1"], name: "Normal speed", action: "normal" },
   { group: "Spheres", keys: ["j"], name: "Select the next ball; with shift, the one before", action: "hands" },
   { group: "Spheres", keys: ["a"], name: "Add a ball", action: "hands" },
-  { group: "Spheres", keys: ["delete", "backspace"], name: "Delete the selected ball", action: "hands" },
+  { group: "Spheres", keys: ["delete"], also: ["backspace"], name: "Delete the selected ball", action: "hands" },
   { group: "Spheres", keys: ["d"], name: "Velocity arrows", action: "hands" },
   { group: "Spheres", keys: ["t"], name: "Trail of the selected ball", action: "hands" },
   { group: "Spheres", keys: ["o"], name: "Follow the selected ball", action: "hands" },
   { group: "Spheres", keys: ["w"], name: "Solid or wire", action: "wire" },
   { group: "Spheres", keys: ["c"], name: "Next colouring", action: "nextColor" },
-  { group: "View", keys: ["arrowleft", "arrowright", "arrowup", "arrowdown"], name: "Turn; with shift, move", action: "camera" },
-  { group: "View", keys: ["+", "="], name: "Closer", action: "camera" },
-  { group: "View", keys: ["-", "_"], name: "Farther", action: "camera" },
-  { group: "View", keys: ["f", "home"], name: "Show everything", action: "fit" },
+  { group: "View", keys: ["arrowleft", "arrowright", "arrowup", "arrowdown"], name: "Turn (with shift: move)", action: "camera" },
+  { group: "View", keys: ["+"], also: ["="], name: "Closer", action: "camera" },
+  { group: "View", keys: ["-"], also: ["_"], name: "Farther", action: "camera" },
+  { group: "View", keys: ["f"], also: ["home"], name: "Show everything", action: "fit" },
   { group: "View", keys: ["x"], name: "Exact against ticks", action: "compare" },
   { group: "View", keys: ["m"], name: "Full screen", action: "fullscreen" },
   { group: "Page", keys: ["g"], name: "Choose a scene", action: "gallery" },
@@ -52,16 +53,14 @@ const PRINTED = {
   arrowup: "↑",
   arrowdown: "↓",
   delete: "delete",
-  backspace: "⌫",
   escape: "esc",
-  home: "home",
 };
 
 /** How a key is printed. @param {string} key */
 export const printed = (key) => PRINTED[key] ?? key.toUpperCase();
 
 /** The row of a key, if it has one. @param {string} key @returns {Row | undefined} */
-export const rowOf = (key) => KEYS.find((row) => row.keys.includes(key.toLowerCase()));
+export const rowOf = (key) => KEYS.find(({ keys, also = [] }) => [...keys, ...also].includes(key.toLowerCase()));
 
 /** "Restart (R)" for the action `restart`. @param {string} action @param {string} [name] */
 export function titleOf(action, name) {

@@ -14,7 +14,7 @@ const MARGIN = 8; // pixels between a picture and what covers it
  * @param {number} page.height
  * @param {number} page.right where the panel begins, or the width
  * @param {number} page.bottom where the bar or the sheet begins
- * @param {number} page.top where the heading ends, on narrow pages
+ * @param {number} page.top where the heading ends
  * @param {number} page.labels height of the labels of the split screen; 0 if it is not split
  * @param {boolean} page.narrow
  * @returns {Layout}
@@ -22,9 +22,12 @@ const MARGIN = 8; // pixels between a picture and what covers it
 export function layout({ width, height, right, bottom, top, labels, narrow }) {
   if (labels > 0) {
     // Only the free area is split, so that both sides show the same.
-    const free = narrow ? Math.max(120, bottom - MARGIN) : height;
-    const viewports = halves(right, free, narrow);
-    const insets = { left: 0, right: 0, top: labels, bottom: narrow ? 0 : height - bottom + MARGIN };
+    const viewports = narrow
+      ? halves(right, top, Math.max(top + 120, bottom - MARGIN), true)
+      : halves(right, 0, height, false);
+    const insets = narrow
+      ? { left: 0, right: 0, top: labels, bottom: 0 }
+      : { left: 0, right: 0, top: top + labels, bottom: height - bottom + MARGIN };
     const { width: w, height: h } = viewports[0];
     return { viewports, size: { width: w, height: h }, insets };
   }

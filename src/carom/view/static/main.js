@@ -36,7 +36,7 @@ import { Hands } from "./tools.js";
 
 const FINEST = 2; // pixels of the picture per pixel of the page
 const SLOWLY = 250; // milliseconds between looks at what changes slowly
-const LABELS = 76; // pixels that the numbers above the halves of the split screen take
+const LABELS = 80; // pixels that the numbers above the halves of the split screen take
 const NARROW = matchMedia("(max-width: 720px)");
 
 class Page {
@@ -259,11 +259,11 @@ class Page {
       right: covered && !NARROW.matches ? box("panel").left : width,
       bottom: covered && NARROW.matches ? box("panel").top : box("bar").top,
       top,
-      labels: split ? top + LABELS : 0,
+      labels: split ? LABELS : 0,
       narrow: NARROW.matches,
     });
     this.viewports = viewports;
-    if (split) this.comparison.arrange(viewports, top);
+    if (split) this.comparison.arrange(viewports, NARROW.matches ? 0 : top);
     this.camera.resize(size.width, size.height, insets);
     if (!this.camera.moved) this.#fit();
     this.stale = true;

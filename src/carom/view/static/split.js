@@ -7,20 +7,22 @@ import { at, element, put } from "./dom.js";
 import { count, scientific, short } from "./numbers.js";
 
 const EVERY = 150; // milliseconds between changes
+const ROUNDING = 1e-9; // of a length: less is no overlap
 
 /**
  * Two equal viewports in the free part of the canvas, side by side or one above the other.
- * @param {number} width @param {number} height of the free part
+ * @param {number} width @param {number} top @param {number} bottom of the free part
  * @param {boolean} stacked
  * @returns {Viewport[]}
  */
-export function halves(width, height, stacked) {
+export function halves(width, top, bottom, stacked) {
+  const height = bottom - top;
   const size = stacked
     ? { width, height: Math.floor(height / 2) }
     : { width: Math.floor(width / 2), height };
-  const second = stacked ? { x: 0, y: size.height } : { x: size.width, y: 0 };
+  const second = stacked ? { x: 0, y: top + size.height } : { x: size.width, y: top };
   return [
-    { x: 0, y: 0, ...size },
+    { x: 0, y: top, ...size },
     { ...second, ...size },
   ];
 }
@@ -52,13 +54,12 @@ export class Comparison {
     document.body.dataset.split = String(on);
   }
 
-  /** @param {Viewport[]} viewports @param {number} top pixels that the heading takes */
+  /** @param {Viewport[]} viewports @param {number} top pixels of them that the heading takes */
   arrange(viewports, top) {
-    viewports.forEach((viewport, k) => {
+    viewports.forEach(({ x, y, width, height }, k) => {
       const { style } = this.sides[k].place;
-      style.setProperty("--x", `${viewport.x}px`);
-      style.setProperty("--y", `${viewport.y + (viewport.y === 0 ? top : 0)}px`);
-      style.setProperty("--width", `${viewport.width}px`);
+      const parts = { x, y, width, height, top };
+      for (const [name, value] of Object.entries(parts)) style.setProperty(`--${name}`, `${value}px`);
     });
   }
 
@@ -73,18 +74,15 @@ export class Comparison {
       put(rows.collisions, count(frame.collisions));
       put(rows.missed, count(frame.missed));
       put(rows.drift, frame.drift === 0 ? "0" : scientific(frame.drift));
-      put(rows.overlap, frame.overlap === 0 ? "0" : short(frame.overlap));
-      this.sides[k].place.dataset.verdict = verdict(frame);
+      put(rows.overlap, frame.overlap < ROUNDING ? "none" : short(frame.overlap));
+      rows.drift.dataset.verdict = verdict(Math.abs(frame.drift));
+      rows.missed.dataset.verdict = frame.missed > 0 ? "poor" : "exact";
     });
   }
 }
 
-/** @param {Keyframe} frame */
-function verdict({ drift, missed }) {
-  const size = Math.abs(drift);
-  if (size < 1e-9 && missed === 0) return "exact";
-  return size < 1e-3 ? "fair" : "poor";
-}
+/** @param {number} drift */
+const verdict = (drift) => (drift < 1e-9 ? "exact" : drift < 1e-3 ? "fair" : "poor");
 
 /** @param {string} title */
 function side(title) {
@@ -97,8 +95,8 @@ function side(title) {
     "dl",
     {},
     row("energy drift", rows.drift, "big"),
+    row("missed", rows.missed, "big"),
     row("collisions", rows.collisions),
-    row("missed", rows.missed),
     row("deepest overlap", rows.overlap),
   );
   return { place: element("section", { class: "side", "aria-label": title }, name, list), name, rows };
