@@ -157,7 +157,7 @@ def line(*ends: float) -> None:
         raise InputError(msg)
     values = [number("line(): end", end) for end in ends]
     half = len(values) // 2
-    start, end = (values[:half] + [0.0])[:3], (values[half:] + [0.0])[:3]
+    start, end = [*values[:half], 0.0][:3], [*values[half:], 0.0][:3]
     _segment("line()", start, end)
 
 

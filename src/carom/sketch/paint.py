@@ -71,7 +71,9 @@ class ColorMode:
             # A grey is measured as brightness is, not as hue.
             grey = _byte(self._part(where, "grey", first, 2 if self.kind == "hsb" else 0))
             return Color(grey, grey, grey, _byte(opaque))
-        names = ("red", "green", "blue") if self.kind == "rgb" else ("hue", "saturation", "brightness")
+        names = (
+            ("red", "green", "blue") if self.kind == "rgb" else ("hue", "saturation", "brightness")
+        )
         if self.kind == "hsb":
             hue = number(f"{where}: hue", first) / self.most[0]
             s, b = (self._part(where, names[k], values[k], k) for k in (1, 2))

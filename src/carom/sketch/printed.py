@@ -29,6 +29,8 @@ class Printed(io.TextIOBase):
         """Take some text."""
         if self._echo is not None:
             self._echo.write(text)
+            if "\n" in text:
+                self._echo.flush()  # a program that runs for hours is read while it runs
         self._tail = (self._tail + text)[-LONGEST:]
         self.number += 1
         return len(text)

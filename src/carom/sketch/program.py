@@ -1,5 +1,6 @@
 """A student's program: read, run, and its errors explained by file and line."""
 
+import builtins
 import sys
 import traceback
 from collections.abc import Callable, Iterator
@@ -186,9 +187,11 @@ class Program:
             return f"{where}: {error}"
         if isinstance(error, RecursionError):
             return f"{where}: a function calls itself without end; give it a way out"
-        # The interpreter's own words, with "Did you mean" where it has an idea.
-        said = "".join(traceback.TracebackException.from_exception(error).format_exception_only())
-        text = " ".join(said.split())
-        if isinstance(error, TypeError) and "'function'" in text:
-            text += " (a function is missing its brackets, as in width())"
-        return f"{where}: {text}"
+        said = " ".join(f"{type(error).__name__}: {error}".split())
+        if isinstance(error, NameError) and error.name:
+            said += nearest(error.name, [*self.names, *vars(builtins)])
+        elif isinstance(error, AttributeError) and error.name:
+            said += nearest(error.name, dir(error.obj))
+        elif isinstance(error, TypeError) and "'function'" in said:
+            said += " (a function is missing its brackets, as in width())"
+        return f"{where}: {said}"

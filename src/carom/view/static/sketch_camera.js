@@ -32,6 +32,11 @@ export class SketchCamera {
     this.version++;
   }
 
+  /** Whether it stands where Processing stands. */
+  get isFront() {
+    return this.azimuth === 0 && this.height === 0 && this.zoom === 1;
+  }
+
   /** Turn by angles in radians. @param {number} right @param {number} up */
   turn(right, up) {
     this.azimuth += right;
@@ -52,9 +57,7 @@ export class SketchCamera {
   matrices(sheet) {
     const { width, height } = sheet;
     const away = (0.5 * height) / HALF_ANGLE;
-    if (this.center === null && (this.azimuth !== 0 || this.height !== 0 || this.zoom !== 1)) {
-      this.center = middle(sheet);
-    }
+    if (this.center === null && !this.isFront) this.center = middle(sheet);
     const [x, y, z] = this.center ?? [0.5 * width, 0.5 * height, 0];
     const stack = new MatrixStack();
     // The eye looks along −z with y up; the sheet's y points down.

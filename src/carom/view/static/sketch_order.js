@@ -81,7 +81,7 @@ export class Order {
     if (kind === BOX) reach *= 0.5;
     if (solid) this.#add(i, flat, true, WHOLE, NO_EDGE, center);
     else if (opacity > 0 || kind !== BOX) {
-      this.#add(i, flat, false, FAR, NO_EDGE, center + reach);
+      if (stroked || kind === BOX) this.#add(i, flat, false, FAR, NO_EDGE, center + reach);
       this.#add(i, flat, false, NEAR, NO_EDGE, center - reach);
     }
     if (kind !== BOX || !stroked) return;

@@ -111,8 +111,8 @@ void main() {
   float strength = far ? 0.42 : 0.95;
   float outline = far ? 0.0 : thin * clamp(0.5 * width + 1.0 - abs(inside - 0.5 * width), 0.0, 1.0);
   float line = vStroke.a * max(strength * grid, 0.7 * outline * float(vFill.a < 1.0));
-  vec3 surface = lit(vFill.rgb, far ? -normal : normal, -normalize(ray));
-  float fill = vFill.a * (far ? 0.5 : 1.0);
+  vec3 surface = lit(vFill.rgb, normal, -normalize(ray));
+  float fill = far ? 0.0 : vFill.a;
   float alpha = coverage * (line + fill * (1.0 - line));
   color = vec4(coverage * (vStroke.rgb * line + surface * fill * (1.0 - line)), alpha);
   if (alpha <= 0.0) discard;
