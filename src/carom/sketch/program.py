@@ -3,7 +3,7 @@
 import builtins
 import sys
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
 from types import ModuleType
@@ -148,7 +148,7 @@ class Program:
         try:
             source = self.path.read_bytes()
         except FileNotFoundError as error:
-            near = nearest(self.path.name, [p.name for p in self.path.parent.glob("*.py")])
+            near = _meant(self.path.name, [p.name for p in self.path.parent.glob("*.py")])
             msg = f"there is no file {self.path.name!r} in {self.path.parent}{near}"
             raise FileError(msg) from error
         except OSError as error:
@@ -189,9 +189,15 @@ class Program:
             return f"{where}: a function calls itself without end; give it a way out"
         said = " ".join(f"{type(error).__name__}: {error}".split())
         if isinstance(error, NameError) and error.name:
-            said += nearest(error.name, [*self.names, *vars(builtins)])
+            said += _meant(error.name, [*self.names, *vars(builtins)])
         elif isinstance(error, AttributeError) and error.name:
-            said += nearest(error.name, dir(error.obj))
+            said += _meant(error.name, dir(error.obj))
         elif isinstance(error, TypeError) and "'function'" in said:
             said += " (a function is missing its brackets, as in width())"
         return f"{where}: {said}"
+
+
+def _meant(name: str, known: Iterable[str]) -> str:
+    """`nearest`, without the list of all of them where none is near."""
+    said = nearest(name, known)
+    return said if "did you mean" in said else ""
