@@ -23,7 +23,7 @@ from carom.errors import (
 )
 from carom.rules import Smooth
 from carom.scene import Camera, Scene, Spheres
-from carom.simulation import Simulation
+from carom.simulation import Bookmark, Simulation
 from carom.state import EVENT, State
 from carom.vector import Vector
 from carom.walls import Box, Cylinder, Open, Periodic, Plane, Sphere
@@ -31,6 +31,7 @@ from carom.walls import Box, Cylinder, Open, Periodic, Plane, Sphere
 __all__ = [
     "EVENT",
     "Ball",
+    "Bookmark",
     "Box",
     "Camera",
     "CaromError",

@@ -18,11 +18,18 @@ class Owner(Protocol):
     def assign(self, name: str, index: int, value: Any) -> None:
         """Replace one row of one array, or refuse with `InputError`."""
 
+    def serial(self, index: int) -> int:
+        """What stands for one sphere for ever, whatever its place in the arrays."""
+
+    def place(self, serial: int) -> int | None:
+        """Where that sphere is in the arrays now; None if it is gone."""
+
 
 class Ball:
     """A live view of one sphere: always as it is now, and settable.
 
-    `Simulation.add` returns one. After ``sim.run(...)`` the same ball shows the new numbers.
+    `Simulation.add` returns one. After ``sim.run(...)`` the same ball shows the new numbers,
+    and it follows its sphere when another one is removed.
 
     Examples
     --------
@@ -36,36 +43,34 @@ class Ball:
     0.0
     """
 
-    __slots__ = ("_index", "_owner")
+    __slots__ = ("_index", "_owner", "_serial")
 
     def __init__(self, owner: Owner, index: int) -> None:
         self._owner = owner
         self._index = index
+        self._serial = owner.serial(index)
 
     def _row(self, name: str) -> Any:
-        row = getattr(self._state(), name)[self._index]
+        row = getattr(self._owner.state, name)[self.index]
         if isinstance(row, np.ndarray):
             row.flags.writeable = False  # a change in place would go unnoticed
         return row
 
     def _assign(self, name: str, value: Any) -> None:
-        self._state()
-        self._owner.assign(name, self._index, value)
-
-    def _state(self) -> State:
-        state = self._owner.state
-        if self._index >= len(state):
-            msg = (
-                f"ball {self._index} is gone: the simulation was reset to {len(state)} spheres; "
-                "add it again"
-            )
-            raise InputError(msg)
-        return state
+        self._owner.assign(name, self.index, value)
 
     @property
     def index(self) -> int:
         """Place of this ball in the arrays of its simulation."""
-        return self._index
+        place = self._owner.place(self._serial)
+        if place is None:
+            msg = (
+                f"ball {self._index} is gone: it was removed, or the simulation went back to a "
+                "time without it; add it again"
+            )
+            raise InputError(msg)
+        self._index = place
+        return place
 
     @property
     def position(self) -> Floats:
@@ -140,4 +145,4 @@ class Ball:
 
     def __repr__(self) -> str:
         x, v = (", ".join(f"{c:.6g}" for c in row) for row in (self.position, self.velocity))
-        return f"<Ball {self._index}: position ({x}), velocity ({v})>"
+        return f"<Ball {self.index}: position ({x}), velocity ({v})>"

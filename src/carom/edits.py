@@ -66,8 +66,19 @@ def joined(state: State, spheres: Spheres, period: Floats) -> State:
         setattr(more, field.name, getattr(spheres, field.name))
     more.position, more.image = fit.wrap(spheres.position, period)
     after = replace(state)
-    for field in fields(State):
-        old = getattr(state, field.name)
-        if isinstance(old, np.ndarray):
-            setattr(after, field.name, np.concatenate([old, getattr(more, field.name)]))
+    for name in _arrays(state):
+        setattr(after, name, np.concatenate([getattr(state, name), getattr(more, name)]))
     return after
+
+
+def without(state: State, index: int) -> State:
+    """`state` without one sphere; the others keep their order."""
+    after = replace(state)
+    for name in _arrays(state):
+        setattr(after, name, np.delete(getattr(state, name), index, axis=0))
+    return after
+
+
+def _arrays(state: State) -> list[str]:
+    """Names of what a state has one row of for each sphere."""
+    return [f.name for f in fields(state) if isinstance(getattr(state, f.name), np.ndarray)]

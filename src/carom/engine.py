@@ -4,7 +4,7 @@ import os
 import threading
 from dataclasses import replace
 from enum import IntEnum
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,6 +83,17 @@ class Engine(Protocol):
 
         0 if nothing was ever closer than touching.
         """
+
+
+@runtime_checkable
+class Resumable(Protocol):
+    """What an engine may have besides, so that a run can be taken up again with the same bits."""
+
+    def checkpoint(self) -> bytes:
+        """The stored states as they are: `restore` then continues with the same bits."""
+
+    def restore(self, checkpoint: bytes) -> None:
+        """Continue from a checkpoint of an engine built from the same state and world."""
 
 
 class FastEngine:

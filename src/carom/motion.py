@@ -3,22 +3,24 @@
 import math
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass, fields, replace
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom import edits, fit, mechanics
-from carom.engine import NO_LIMIT, Engine, Stop
+from carom.engine import NO_LIMIT, Engine, Resumable, Stop
+from carom.errors import InputError
 from carom.interrupts import HeldInterrupt
 from carom.rules import Smooth
-from carom.scene import Spheres
+from carom.scene import Scene, Spheres
 from carom.state import EVENT, State
 from carom.walls import Wall, wall_names, world
 from carom.world import World
 
 MakeEngine = Callable[[State, World], Engine]
+Serials = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -30,9 +32,60 @@ class Surroundings:
     gravity: tuple[float, float, float]
     collide: bool
 
+    @classmethod
+    def of(cls, scene: Scene) -> Self:
+        """Those of a scene."""
+        return cls(scene.walls, scene.rule, scene.gravity, scene.collide)
+
     def world(self) -> World:
         """The same as numbers; contradictions are refused with `InputError`."""
         return world(self.walls, self.rule, self.gravity, self.collide)
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """Where the first run began."""
+
+    state: State
+    surroundings: Surroundings
+    serial: Serials
+
+
+@dataclass(frozen=True)
+class Account:
+    """What engines that are gone have counted, and the energy the present one began with."""
+
+    energy: float
+    dissipated: float = 0.0
+    withheld: float = 0.0
+    overlap: float = 0.0
+    drift: float = 0.0
+    missed: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Saved:
+    """A moment of a `Motion`, to go back to.
+
+    `engine` is a checkpoint of an engine built from `built` in this `world`; None means that
+    the next run builds one. The big things are shared with the motion and with each other.
+    """
+
+    of: "Motion"
+    start: Start | None
+    surroundings: Surroundings
+    world: World
+    serial: Serials
+    account: Account
+    built: State
+    engine: bytes | None
+
+    @property
+    def nbytes(self) -> int:
+        """Memory held at most, in bytes."""
+        arrays = (getattr(self.built, f.name) for f in fields(self.built))
+        held = sum(a.nbytes for a in arrays if isinstance(a, np.ndarray))
+        return held + self.serial.nbytes + len(self.engine or b"")
 
 
 class EventKeeper:
@@ -91,16 +144,27 @@ class Motion:
         self._make_engine = make_engine
         self._strict = strict
         self._kept = EventKeeper(keep_events)
-        self._begin(state, surroundings)
+        self._born = 0
+        self.begin(state, surroundings)
 
-    def _begin(self, state: State, surroundings: Surroundings) -> None:
+    def begin(self, state: State, surroundings: Surroundings) -> None:
+        """Start afresh from other spheres: views of the old ones are void."""
+        self._begin(Start(state, surroundings, self._new_serials(len(state))))
+
+    def _begin(self, start: Start) -> None:
         self._engine: Engine | None = None
-        self._snapshot: State | None = state
-        self._start: tuple[State, Surroundings] | None = None
-        self.surroundings, self.world = surroundings, surroundings.world()
-        self._dissipated = self._withheld = self._overlap = 0.0
-        self._energy_given = mechanics.energy(state, self.world)
+        self._snapshot: State | None = start.state
+        self._built = start.state
+        self._start: Start | None = None
+        self._serial = start.serial
+        self.surroundings, self.world = start.surroundings, start.surroundings.world()
+        self._account = Account(mechanics.energy(start.state, self.world))
         self._kept.clear()
+
+    def _new_serials(self, n: int) -> Serials:
+        """Numbers no sphere of this motion has had. They ascend, so a search finds one."""
+        self._born += n
+        return np.arange(self._born - n, self._born)
 
     # What is now, and what has happened.
 
@@ -113,9 +177,24 @@ class Motion:
         return self._snapshot
 
     @property
-    def start(self) -> State:
-        """The state in which the first run began."""
-        return self._start[0] if self._start else self.state
+    def start(self) -> Start:
+        """Where the first run began; here and now if there was none."""
+        return self._start or Start(self.state, self.surroundings, self._serial)
+
+    @property
+    def keep_events(self) -> int:
+        """How many of the newest events are held."""
+        return self._kept.limit
+
+    def serial(self, index: int) -> int:
+        """What stands for one sphere for ever, whatever its place in the arrays."""
+        return int(self._serial[index])
+
+    def place(self, serial: int) -> int | None:
+        """Where that sphere is in the arrays now; None if it is gone."""
+        index = int(np.searchsorted(self._serial, serial))
+        there = index < len(self._serial) and self._serial[index] == serial
+        return index if there else None
 
     @property
     def time(self) -> float:
@@ -135,17 +214,22 @@ class Motion:
     @property
     def dissipated(self) -> float:
         """Energy the rules have taken since the start."""
-        return self._dissipated + (self._engine.dissipated if self._engine else 0.0)
+        return self._account.dissipated + (self._engine.dissipated if self._engine else 0.0)
 
     @property
     def withheld(self) -> float:
         """Energy the contact-time cure has kept from being dissipated since the start."""
-        return self._withheld + (self._engine.withheld if self._engine else 0.0)
+        return self._account.withheld + (self._engine.withheld if self._engine else 0.0)
 
     @property
     def max_overlap(self) -> float:
         """Largest (sigma - r)/sigma since the start."""
-        return max(self._overlap, self._engine.max_overlap() if self._engine else 0.0)
+        return max(self._account.overlap, self._engine.max_overlap() if self._engine else 0.0)
+
+    @property
+    def missed(self) -> int:
+        """Collisions that a method of fixed steps has not seen since the start."""
+        return self._account.missed + int(getattr(self._engine, "missed", 0))
 
     @property
     def collapse(self) -> tuple[float, int, int] | None:
@@ -159,26 +243,38 @@ class Motion:
 
     @property
     def energy_drift(self) -> float:
-        """(energy now + energy taken by rules - energy given)/energy given."""
-        error = mechanics.energy(self.state, self.world) + self.dissipated - self._energy_given
-        given = abs(self._energy_given)
+        """Error of the energy, relative to what there was, summed over the changes between."""
+        account, engine = self._account, self._engine
+        taken = engine.dissipated if engine else 0.0
+        error = mechanics.energy(self.state, self.world) + taken - account.energy
+        given = abs(account.energy)
         # Where kinetic and potential energy cancel, the sum is no measure but their sizes are.
         sizes = mechanics.energy_sizes(self.state, self.world)
         scale = given if given > 1e-9 * sizes else sizes
-        return error / scale if scale > 0 else 0.0
+        return account.drift + (error / scale if scale > 0 else 0.0)
 
     # Changes from outside.
 
-    def change(self, state: State, surroundings: Surroundings | None = None) -> None:
-        """Go on from another state, or in other surroundings."""
-        self._dissipated, self._withheld = self.dissipated, self.withheld
-        self._overlap = self.max_overlap
+    def change(
+        self,
+        state: State,
+        surroundings: Surroundings | None = None,
+        serial: Serials | None = None,
+    ) -> None:
+        """Go on from another state, or in other surroundings, or with other spheres."""
+        there = self.world if surroundings is None else surroundings.world()
         # Energy that a change brings is given, so the drift goes on counting errors only.
-        self._energy_given -= mechanics.energy(self.state, self.world)
-        self._engine, self._snapshot = None, state
+        self._account = self._closed(mechanics.energy(state, there))
+        self._engine, self._snapshot, self.world = None, state, there
         if surroundings is not None:
-            self.surroundings, self.world = surroundings, surroundings.world()
-        self._energy_given += mechanics.energy(state, self.world)
+            self.surroundings = surroundings
+        if serial is not None:
+            self._serial = serial
+
+    def _closed(self, energy: float) -> Account:
+        """The account with which another engine begins at this energy."""
+        errors = self.max_overlap, self.energy_drift, self.missed
+        return Account(energy, self.dissipated, self.withheld, *errors)
 
     def assign(self, name: str, index: int | slice, value: Any) -> None:
         """Replace one array, or one row of it, if the result can be run."""
@@ -195,7 +291,12 @@ class Motion:
         """Add spheres, if they fit."""
         after = edits.joined(self.state, spheres, self.world.period)
         self._check(after, self.world, self.surroundings)
-        self.change(after)
+        self.change(after, serial=np.append(self._serial, self._new_serials(len(spheres))))
+
+    def remove(self, index: int) -> None:
+        """Take one sphere away; the others keep their order."""
+        after = edits.without(self.state, index)
+        self.change(after, serial=np.delete(self._serial, index))
 
     def surround(self, surroundings: Surroundings) -> None:
         """Change walls, rule or gravity; whatever was resting wakes."""
@@ -217,7 +318,35 @@ class Motion:
 
     def restart(self) -> None:
         """Go back to where the first run began: spheres, surroundings, counters."""
-        self._begin(*(self._start or (self.state, self.surroundings)))
+        self._begin(self.start)
+
+    def saved(self) -> Saved:
+        """Save this moment for `return_to`."""
+        built, bits, account = self.state, None, self._account
+        if isinstance(self._engine, Resumable):
+            built, bits = self._built, self._engine.checkpoint()
+        elif self._engine is not None:
+            account = self._closed(mechanics.energy(built, self.world))
+        around = self.surroundings, self.world, self._serial
+        return Saved(self, self._start, *around, account, built, bits)
+
+    def return_to(self, saved: Saved) -> None:
+        """Go back to exactly that moment; the events of the last run are gone."""
+        if saved.of is not self:
+            msg = "this bookmark is of another simulation; return to one of this simulation's own"
+            raise InputError(msg)
+        engine: Engine | None = None
+        if saved.engine is not None:
+            same = self._built is saved.built and self.world is saved.world
+            engine = self._engine if same else None
+            engine = engine or self._make_engine(saved.built, saved.world)
+            assert isinstance(engine, Resumable)
+            engine.restore(saved.engine)
+        self._engine, self._built = engine, saved.built
+        self._snapshot = saved.built if engine is None else None
+        self._start, self._serial, self._account = saved.start, saved.serial, saved.account
+        self.surroundings, self.world = saved.surroundings, saved.world
+        self._kept.clear()
 
     def advance(
         self,
@@ -228,10 +357,10 @@ class Motion:
     ) -> Stop:
         """Run to a time or for a count; Ctrl-C and `progress` get a turn between slices."""
         self._kept.clear()
-        if self._start is None:
-            self._start = (self.state, self.surroundings)
+        self._start = self.start
         if self._engine is None:
-            self._engine = self._make_engine(self.state, self.world)
+            self._built = self.state
+            self._engine = self._make_engine(self._built, self.world)
         engine = self._engine
         pairs, walls = engine.collisions, engine.wall_collisions
         stop = Stop.SLICE

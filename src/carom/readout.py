@@ -200,8 +200,9 @@ class Readout:
     def energy_drift(self) -> float:
         """(kinetic + potential + dissipated - start)/start: the error of the arithmetic.
 
-        Energy that comes and goes by assignments between runs counts as start. If the start
-        is 0, the error is relative to the sizes of kinetic and potential energy.
+        An assignment, addition or removal between runs makes a new start, and the errors of
+        all starts are summed. If the energy at a start is 0, its error is relative to the sizes
+        of kinetic and potential energy.
         """
         return self._motion.energy_drift
 
@@ -209,6 +210,14 @@ class Readout:
     def max_overlap(self) -> float:
         """Largest (sigma - r)/sigma since the start, of collisions and of neighbours now."""
         return self._motion.max_overlap
+
+    @property
+    def missed(self) -> int:
+        """Collisions that ``method="tick"`` has not seen since the start; 0 for exact methods.
+
+        Counted are those that exact flight from the start of each tick has within it.
+        """
+        return self._motion.missed
 
     # Sums over all spheres that are not fixed. Cost: one pass over the arrays.
 

@@ -46,8 +46,8 @@
       const start = hit.map((part, k) => part - late[k] * when - 0.5 * g[k] * when * when);
       const end = free(start, late, h).map((part, k) => Math.fround(
         period[k] > 0 ? part - period[k] * Math.round(part / period[k]) : part));
-      const a = { x, v, count: hits === 3 ? 128 : 126 };
-      const b = { x: end, v: w.map(Math.fround), count: hits === 3 ? 2 : (126 + hits) & 127 };
+      const a = { x, v, count: hits === 3 ? 0x80000000 : 0x7ffffffe };
+      const b = { x: end, v: w.map(Math.fround), count: hits === 3 ? 2 : (0x7ffffffe + hits) & 0x7fffffff };
       cases.push([a, b]);
       x0.push(...a.x); v0.push(...a.v); x1.push(...b.x); v1.push(...b.v);
       c0.push(a.count); c1.push(b.count);
@@ -61,10 +61,10 @@
     }
     for (const [name, values] of Object.entries({ aC0: c0, aC1: c1 })) {
       gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-      gl.bufferData(gl.ARRAY_BUFFER, new Uint8Array(values), gl.STATIC_DRAW);
+      gl.bufferData(gl.ARRAY_BUFFER, new Uint32Array(values), gl.STATIC_DRAW);
       const at = gl.getAttribLocation(program, name);
       gl.enableVertexAttribArray(at);
-      gl.vertexAttribIPointer(at, 1, gl.UNSIGNED_BYTE, 0, 0);
+      gl.vertexAttribIPointer(at, 1, gl.UNSIGNED_INT, 0, 0);
     }
     const at = (name) => gl.getUniformLocation(program, name);
     gl.uniform1f(at("uS"), s);

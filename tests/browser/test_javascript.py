@@ -12,6 +12,7 @@ import pytest
 
 from carom.state import State
 from carom.view.protocol import Meters, decode_command, encode_frame, encode_scene
+from carom.view.wire import OPERATIONS, VERSION
 
 HERE = Path(__file__).parent / "js"
 
@@ -52,7 +53,9 @@ def test_protocol_on_both_sides(tmp_path):
     state.time, state.collisions, state.wall_collisions = 0.1, 2**50 + 1, 3
     meters = Meters(
         clock=12.5, gravity=(0.0, 0.5, -9.81), kinetic=1.0, potential=2.0, dissipated=-3.0,
-        drift=1e-16, speed=0.125, reached=0.1, epoch=4, scene=6, playing=False, failed=True,
+        drift=1e-16, speed=0.125, reached=0.1, momentum=(7.0, -8.0, 9.5), temperature=1.5,
+        epoch=4, scene=6, missed=11, overlap=0.25, playing=False, failed=True, twin=True,
+        reversed=True,
     )  # fmt: skip
     about = {"title": "Σ “quoted”", "walls": [], "pace": 60}
     (tmp_path / "frame.bin").write_bytes(encode_frame(state, meters))
@@ -60,12 +63,13 @@ def test_protocol_on_both_sides(tmp_path):
     expected = {
         "frame": {
             "n": 2, "epoch": 4, "scene": 6, "playing": False, "failed": True,
-            "t": 0.1, "clock": 12.5, "gravity": [0.0, 0.5, -9.81], "kinetic": 1.0,
+            "twin": True, "reversed": True, "momentum": [7.0, -8.0, 9.5], "temperature": 1.5,
+            "missed": 11, "overlap": 0.25, "t": 0.1, "clock": 12.5, "gravity": [0.0, 0.5, -9.81], "kinetic": 1.0,
             "potential": 2.0, "dissipated": -3.0, "drift": 1e-16, "collisions": 2**50 + 1,
             "wallCollisions": 3, "speed": 0.125, "reached": 0.1,
             "position": np.float32(state.position).ravel().tolist(),
             "velocity": np.float32(state.velocity).ravel().tolist(),
-            "counts": [1, 128 + 7],
+            "counts": [129, 2**31 + 7],
         },
         "scene": {
             "about": about, "radius": [0.5, 2.0], "color": [0x123456, 0xFEDCBA],
@@ -75,7 +79,14 @@ def test_protocol_on_both_sides(tmp_path):
     (tmp_path / "expected.json").write_text(json.dumps(expected))
     node("protocol.test.mjs", CAROM_EXCHANGE=str(tmp_path))
     said = [decode_command(text) for text in json.loads((tmp_path / "said.json").read_text())]
-    ops = [command.op for command in said]
-    assert ops == ["hello", "credit", "play", "pause", "restart", "speed"]
-    assert (said[0].token, said[0].version) == ("token", 1)
-    assert (said[1].count, said[5].value) == (2, 0.5)
+    assert {command.op for command in said} == set(OPERATIONS)
+    values = {command.op: command.values for command in said}
+    assert values["hello"] == {"token": "token", "version": VERSION}
+    assert values["credit"] == {"count": 2}
+    assert values["speed"] == {"value": 0.5}
+    assert values["gravity"] == {"value": (0, -1, 2)}
+    assert values["scene"] == {"name": "gas", "options": {"n": 50, "speed": 1.5}}
+    assert values["push"] == {"index": 7, "velocity": (1, 2, 3)}
+    assert values["add"] == {
+        "position": (1, 2, 3), "velocity": (0, 0, 1), "radius": 0.5, "mass": 2, "color": 0xFF0000
+    }  # fmt: skip

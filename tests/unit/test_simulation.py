@@ -239,6 +239,46 @@ class TestReset:
         sim.reset()
         assert len(sim) == 1
 
+    @each_method
+    def test_to_the_start_of_another_scene(self, method):
+        first, second = carom.scenes.two_balls(), carom.scenes.newton_cradle()
+        sim = carom.Simulation(first, gravity=(0, 0, -1), method=method, keep_events=3)
+        ball = sim[0]
+        sim.run(until=3)
+        sim.reset(second)
+        assert (sim.time, sim.collisions, sim.wall_collisions, len(sim.events)) == (0, 0, 0, 0)
+        assert (sim.dissipated, sim.energy_drift, sim.max_overlap) == (0, 0, 0)
+        assert sim.scene is second
+        assert (sim.pace, sim.method, len(sim)) == (second.pace, method, 5)
+        assert (sim.walls, sim.gravity.tolist()) == (second.walls, [0, 0, 0])
+        with pytest.raises(carom.InputError, match="ball 0 is gone"):
+            ball.mass  # noqa: B018
+        fresh = carom.Simulation(second, method=method)
+        for each in (sim, fresh):
+            each.run(until=6)
+        assert np.array_equal(sim.velocity, fresh.velocity)
+        assert np.array_equal(sim.position, fresh.position)
+        assert len(sim.events) == 3 < len(fresh.events)
+        sim.reset()
+        assert sim.scene is second
+        assert np.array_equal(sim.position, second.spheres.position)
+
+    def test_a_scene_that_cannot_be_run_changes_nothing(self):
+        sim = gas()
+        sim.run(until=0.5)
+        before = sim.state
+        inside = carom.Scene(carom.Spheres.of([(0, 0, 0), (0.5, 0, 0)]))
+        for scene, sentence in [
+            ("gas", "scene must be a Scene"),
+            (carom.scenes.gas, "scene must be a Scene"),
+            (inside, "overlap by 0.5"),
+            (carom.Scene(carom.Spheres.of([])), "no spheres"),
+        ]:
+            with pytest.raises(carom.InputError, match=sentence):
+                sim.reset(scene)
+        assert (sim.scene, sim.time, len(sim.events) > 0) == (None, 0.5, True)
+        assert np.array_equal(sim.position, before.position)
+
 
 class TestManners:
     @each_method

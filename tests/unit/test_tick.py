@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+import carom
 from carom.engine import Stop
 from carom.errors import InputError
 from carom.reference.tick import TickEngine
@@ -244,3 +245,70 @@ def test_the_past_is_refused():
     fly(engine, 2.0)
     with pytest.raises(InputError, match="already"):
         engine.advance(1.0)
+
+
+class TestTwin:
+    """`Simulation.in_ticks` and `missed`."""
+
+    def test_it_starts_where_the_scene_starts(self):
+        sim = carom.Simulation(carom.scenes.phase_4(n=6), gravity=(0, 0, -0.01))
+        start = sim.state
+        sim.run(until=30)
+        sim.gravity = (0, 0, 0)
+        twin = sim.in_ticks()
+        assert (twin.method, twin.tick, twin.time, twin.collisions) == ("tick", 1.0, 0, 0)
+        assert twin.scene is sim.scene
+        assert (twin.walls, twin.gravity.tolist()) == (sim.walls, [0, 0, -0.01])
+        assert np.array_equal(twin.position, start.position)
+        assert np.array_equal(twin.velocity, start.velocity)
+        twin.run(until=10)
+        twin.remove(0)
+        assert (sim.time, len(sim), sim.method) == (30, 6, "exact")
+        assert np.array_equal(start.position, sim.in_ticks().position)
+
+    def test_without_a_scene_it_starts_from_the_spheres_there_are(self):
+        sim = carom.Simulation(walls=carom.Box(9, 9, 9), rule=carom.Smooth(0.5), keep_events=4)
+        sim.add(velocity=(1, 2, 3))
+        sim.add(position=(2, 0, 0))
+        twin = sim.in_ticks(0.25)
+        assert (twin.tick, twin.scene, twin.rule) == (0.25, None, carom.Smooth(0.5))
+        assert sim.in_ticks().tick == 1 / 60
+        twin.run(until=20)
+        assert twin.wall_collisions > 4 == len(twin.events)
+        twin.reset()
+        assert twin.velocity[0].tolist() == [1, 2, 3]
+        assert sim.wall_collisions == 0
+
+    def test_what_is_missed_is_counted_through_changes(self):
+        # Two fast balls pass through one another within a tick; exact flight has them collide.
+        sim = carom.Simulation()
+        for side in (-1.0, 1.0):
+            sim.add(position=(2.5 * side, 0, 0), velocity=(-4 * side, 0, 0))
+        twin = sim.in_ticks(1)
+        twin.run(until=2)
+        assert (twin.collisions, twin.missed) == (0, 1)
+        twin.gravity = (0, 0, 0)
+        twin.velocity = -twin.velocity
+        twin.run(until=4)
+        assert (twin.collisions, twin.missed) == (0, 2)
+        mark = twin.bookmark()
+        twin.reset()
+        assert twin.missed == 0
+        twin.return_to(mark)
+        assert twin.missed == 2
+        sim.run(until=4)
+        assert (sim.collisions, sim.missed) == (1, 0)
+
+    def test_the_method_by_its_name_counts_too(self):
+        scene = carom.scenes.phase_4()
+        by_name = carom.Simulation(scene, method="tick", tick=1)
+        twin = carom.Simulation(scene, method="reference").in_ticks()
+        for sim in (by_name, twin):
+            sim.run(until=100)
+        assert by_name.missed == twin.missed > 0
+        assert np.array_equal(by_name.position, twin.position)
+
+    @pytest.mark.parametrize("tick", [0, -1, math.nan, "a"])
+    def test_a_tick_is_above_0(self, tick):
+        with pytest.raises(carom.InputError, match="tick"):
+            carom.Simulation(carom.scenes.two_balls()).in_ticks(tick)

@@ -1,5 +1,6 @@
 """The thread that lets the simulation run for the view."""
 
+import json
 import time
 from itertools import pairwise
 
@@ -10,7 +11,8 @@ import carom
 from carom import scenes
 from carom.errors import CollapseError
 from carom.view.driver import PATIENCE, Driver, Pacer
-from carom.view.protocol import FRAME_HEADER
+from carom.view.protocol import Command
+from carom.view.wire import FRAME_HEADER, HEADER, METERS
 
 
 class Watcher:
@@ -39,24 +41,30 @@ class Watcher:
         pytest.fail(f"it did not happen; the last frame was {self.snapshots and self.head()}")
 
     def head(self):
-        fields = FRAME_HEADER.unpack_from(self.snapshots[-1].frame)
-        names = [
-            *("magic", "version", "kind", "n", "epoch", "flags", "scene", "t", "clock"),
-            *("gx", "gy", "gz", "kinetic", "potential", "dissipated", "drift"),
-            *("collisions", "wall_collisions", "speed", "reached"),
-        ]
+        fields = FRAME_HEADER.unpack_from(self.snapshots[-1].frames[0])
+        names = [*(name for name, _ in HEADER), *METERS]
         return dict(zip(names, fields, strict=True))
+
+    def note(self, key):
+        return json.loads(self.snapshots[-1].notes[key][1])[key]
+
+    def order(self, op, **values):
+        answers = []
+        self.driver.order(Command(op, values), answers.append)
+        return answers
 
 
 class Stub:
     """Counts time only; `cost` seconds of sleep per simulated second."""
 
     def __init__(self, cost=0.0, error=None):
-        real = carom.Simulation(scenes.two_balls())
-        self.scene, self.state, self.world, self.pace = real.scene, real.state, real.world, 1.0
-        self.kinetic_energy = self.potential_energy = self.dissipated = self.energy_drift = 0.0
+        self._real = carom.Simulation(scenes.two_balls())
+        self.state, self.pace = self._real.state, 1.0
         self.cost, self.error = cost, error
         self.time = 0.0
+
+    def __getattr__(self, name):
+        return getattr(self._real, name)
 
     def run(self, *, duration, progress):
         if self.error is not None and duration > 0:
@@ -88,11 +96,11 @@ def test_frames_hold_the_exact_state():
     sim = carom.Simulation(scenes.two_balls())
     with Watcher(sim) as page:
         page.wait_for(lambda head: head["t"] > 0.1)
-        page.driver.order("playing", 0.0)
+        page.order("pause")
         head = page.wait_for(lambda head: head["flags"] == 0)
     assert head["t"] == sim.time
     assert head["kinetic"] == sim.kinetic_energy
-    body = np.frombuffer(page.snapshots[-1].frame, "<f4", 6, FRAME_HEADER.size)
+    body = np.frombuffer(page.snapshots[-1].frames[0], "<f4", 6, FRAME_HEADER.size)
     assert body == pytest.approx(sim.position.ravel(), rel=1e-6)
 
 
@@ -100,13 +108,13 @@ def test_pause_and_play():
     sim = carom.Simulation(scenes.two_balls())
     with Watcher(sim) as page:
         page.wait_for(lambda head: head["t"] > 0)
-        page.driver.order("playing", 0.0)
+        page.order("pause")
         page.wait_for(lambda head: head["flags"] == 0)
         before, frames = sim.time, len(page.snapshots)
         time.sleep(0.2)
         assert sim.time == before
         assert len(page.snapshots) == frames
-        page.driver.order("playing", 1.0)
+        page.order("play")
         page.wait_for(lambda head: head["t"] > before)
 
 
@@ -115,8 +123,8 @@ def test_restart_goes_back_to_the_same_start():
     start = sim.position.copy()
     with Watcher(sim) as page:
         page.wait_for(lambda head: head["collisions"] > 0)
-        page.driver.order("playing", 0.0)
-        page.driver.order("restart", 1.0)
+        page.order("pause")
+        page.order("restart")
         head = page.wait_for(lambda head: head["epoch"] == 1)
     assert (head["t"], head["collisions"], head["flags"]) == (0.0, 0.0, 0)
     assert np.array_equal(sim.position, start)
@@ -124,7 +132,7 @@ def test_restart_goes_back_to_the_same_start():
 
 def test_speed():
     with Watcher(carom.Simulation(scenes.two_balls())) as page:
-        page.driver.order("speed", 0.01)
+        page.order("speed", value=0.01)
         page.wait_for(lambda head: head["speed"] == 0.01)
         first = page.head()
         time.sleep(0.4)
@@ -149,7 +157,7 @@ def test_an_engine_that_cannot_keep_up_lags_and_still_obeys_at_once():
         time.sleep(0.8)
         assert page.head()["reached"] < 0.2
         asked = time.perf_counter()
-        page.driver.order("playing", 0.0)
+        page.order("pause")
         page.wait_for(lambda head: head["flags"] == 0)
         assert time.perf_counter() - asked < 0.05 + 2 * PATIENCE
 
@@ -158,14 +166,14 @@ def test_a_collapse_is_told_and_a_restart_forgets_it():
     sim = Stub(error=CollapseError("spheres 0 and 1 collapse"))
     with Watcher(sim) as page:
         page.wait_for(lambda head: head["flags"] == 2)
-        assert page.snapshots[-1].failure == "spheres 0 and 1 collapse"
-        page.driver.order("playing", 1.0)
+        assert page.note("failure") == "Spheres 0 and 1 collapse."
+        page.order("play")
         time.sleep(0.05)
         assert page.head()["flags"] == 2
         sim.error = None
-        page.driver.order("restart", 1.0)
+        page.order("restart")
         page.wait_for(lambda head: head["flags"] == 1)
-        assert page.snapshots[-1].failure == ""
+        assert page.note("failure") == ""
 
 
 def test_other_errors_end_the_thread_and_are_kept():
@@ -192,3 +200,58 @@ def test_pacer_is_not_misled_by_what_a_call_costs_in_slow_motion():
         assert step <= wanted
         pacer.learn(step, 1e-3, budget=0.01)
     assert step == 1.0
+
+
+def test_a_step_pauses_at_the_next_collision_and_says_which():
+    sim = carom.Simulation(scenes.phase_3())
+    with Watcher(sim) as page:
+        page.wait_for(lambda head: head["t"] > 0)
+        page.order("step")
+        head = page.wait_for(lambda head: head["flags"] == 0)
+        event = page.note("event")
+        assert head["t"] == event["t"] == sim.time
+        assert (event["i"], event["j"]) == tuple(sim.events[-1][["i", "j"]])
+        assert np.allclose(event["impulse"], sim.events[-1]["impulse"])
+        before = sim.collisions
+        page.order("step")
+        page.wait_for(lambda head: head["collisions"] == before + 1)
+        assert page.note("event")["serial"] == event["serial"] + 1
+
+
+def test_what_cannot_be_done_is_answered_in_a_sentence_and_time_runs_on():
+    with Watcher(carom.Simulation(scenes.phase_3())) as page:
+        page.wait_for(lambda head: head["t"] > 0)
+        answers = page.order("remove", index=12)
+        before = page.wait_for(lambda head: answers)["t"]
+        assert json.loads(answers[0]) == {
+            "refused": "There is no sphere 12; there are 12, counted from 0."
+        }
+        assert page.wait_for(lambda head: head["t"] > before)["flags"] == 1
+
+
+def test_of_many_wishes_of_a_slider_the_last_counts():
+    sim = carom.Simulation(scenes.phase_3())
+    with Watcher(sim) as page:
+        page.wait_for(lambda head: head["t"] > 0)
+        for k in range(200):
+            page.order("gravity", value=(0.0, 0.0, -k / 100))
+        page.wait_for(lambda head: head["gravity_z"] == -1.99)
+    assert page.note("settings")["gravity"] == [0, 0, -1.99]
+
+
+def test_the_twin_follows_to_the_same_moments():
+    sim = carom.Simulation(scenes.phase_3())
+    with Watcher(sim) as page:
+        page.wait_for(lambda head: head["t"] > 20)
+        page.order("compare", on=True)
+        page.wait_for(lambda head: len(page.snapshots[-1].frames) == 2 and head["t"] > 100)
+        exact, ticks = (FRAME_HEADER.unpack_from(f) for f in page.snapshots[-1].frames)
+        names = [*(name for name, _ in HEADER), *METERS]
+        exact, ticks = (dict(zip(names, frame, strict=True)) for frame in (exact, ticks))
+        assert exact["t"] == ticks["t"]
+        assert (exact["flags"], ticks["flags"]) == (1, 5)
+        assert exact["epoch"] == ticks["epoch"]
+        page.wait_for(lambda head: head["collisions"] > 30)
+        assert FRAME_HEADER.unpack_from(page.snapshots[-1].frames[1])[7 + METERS.index("missed")]
+        page.order("compare", on=False)
+        page.wait_for(lambda head: len(page.snapshots[-1].frames) == 1)

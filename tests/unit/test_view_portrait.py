@@ -11,7 +11,7 @@ from carom.view.portrait import portrait
 
 
 def told(sim):
-    return json.loads(json.dumps(portrait(sim, sim.state), allow_nan=False))
+    return json.loads(json.dumps(portrait(sim, sim.state, 7), allow_nan=False))
 
 
 def test_the_papers_phases_keep_the_papers_scale():
@@ -28,8 +28,22 @@ def test_walls_as_the_engine_counts_them():
     assert [wall["offset"] for wall in about["walls"]] == [-250] * 6
     assert np.array(about["walls"][1]["normal"]) == pytest.approx([-1, 0, 0])
     assert told(carom.Simulation(scenes.phase_0()))["walls"] == [
-        {"kind": 1, "normal": [0, 0, 0], "offset": 500}
+        {"kind": 1, "normal": [0, 0, 0], "offset": 500, "name": "Sphere"}
     ]
+    assert about["walls"][1]["name"] == "x+ wall of the Box"
+
+
+def test_where_it_comes_from():
+    about = told(carom.Simulation(scenes.phase_3(n=5)))
+    assert about["origin"] == {"name": "phase-3", "options": {"n": 5, "width": 500, "seed": 1}}
+    assert (about["key"], about["method"]) == (7, "exact")
+    own = told(carom.Simulation(carom.Scene(carom.Spheres.of((0, 0, 0)))))
+    assert own["origin"] is None
+
+
+def test_axes_along_which_momentum_is_conserved():
+    assert told(carom.Simulation(scenes.fluid(n=32)))["free_axes"] == 3
+    assert told(carom.Simulation(scenes.gas(n=5)))["free_axes"] == 0
 
 
 def test_scales_follow_the_units():
@@ -39,6 +53,7 @@ def test_scales_follow_the_units():
     about = told(sim)
     assert about["full_energy"] == 20  # 3 times 9, rounded to 1, 2 or 5
     assert about["full_speed"] == 5  # 2 times 3
+    assert about["full_gravity"] == 5  # 2.5 times 9 over 4
     assert about["color"] == "own"
     assert (about["low"], about["high"]) == ([-0.5, -0.5, -0.5], [4.5, 0.5, 0.5])
 

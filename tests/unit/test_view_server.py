@@ -1,5 +1,6 @@
 """The live view's server, and attacks on it."""
 
+import ipaddress
 import json
 import signal
 import socket
@@ -19,9 +20,11 @@ from websockets.uri import parse_uri
 import carom
 from carom import scenes
 from carom.errors import FileError, InputError
-from carom.view import LiveView, serve
+from carom.view import LiveView, network, serve
 from carom.view.files import TABLE, load
+from carom.view.protocol import Command
 from carom.view.server import MAX_CLIENTS
+from carom.view.wire import VERSION
 
 
 @pytest.fixture
@@ -41,7 +44,7 @@ def address(view):
 
 
 @contextmanager
-def page(view, *, token=None, version=1, **options):
+def page(view, *, token=None, version=VERSION, **options):
     """A connection that said hello."""
     base, right = address(view)
     ws = connect(
@@ -55,6 +58,16 @@ def page(view, *, token=None, version=1, **options):
 
 def say(ws, **message):
     ws.send(json.dumps(message))
+
+
+def hear(ws, kind=bytes, timeout=5):
+    """The next message that is binary, or else the value of the next text with this key."""
+    while True:
+        message = ws.recv(timeout=timeout)
+        if kind is bytes and isinstance(message, bytes):
+            return message
+        if isinstance(message, str) and kind in (said := json.loads(message)):
+            return said[kind]
 
 
 def closed(ws):
@@ -105,19 +118,59 @@ def test_the_table_names_every_module_of_the_page():
 def test_scene_comes_first_then_frames_as_credit_allows(view):
     with page(view) as ws:
         say(ws, op="credit", count=2)
-        kinds = [ws.recv(timeout=5)[6] for _ in range(3)]
+        kinds = [hear(ws)[6] for _ in range(3)]
         assert kinds == [2, 1, 1]
         with pytest.raises(TimeoutError):
-            ws.recv(timeout=0.2)
+            hear(ws, timeout=0.2)
         say(ws, op="credit", count=1)
-        assert ws.recv(timeout=5)[6] == 1
+        assert hear(ws)[6] == 1
+
+
+def test_every_page_is_told_its_role_and_the_library(view):
+    with page(view) as ws:
+        assert hear(ws, "role") == "control"
+        names = [scene["name"] for scene in hear(ws, "catalogue")]
+        assert names == scenes.names()
+
+
+def test_notes_come_with_the_first_frame_and_when_they_change(view):
+    with page(view) as ws:
+        say(ws, op="credit", count=1)
+        assert hear(ws, "settings")["restitution"] == 1
+        hear(ws)
+        say(ws, op="rule", restitution=0.5)
+        say(ws, op="credit", count=4)
+        assert hear(ws, "settings")["restitution"] == 0.5
+
+
+def test_only_the_page_that_asked_is_told_why_not(view):
+    with page(view) as ws, page(view) as other:
+        say(ws, op="remove", index=99)
+        assert hear(ws, "refused") == "There is no sphere 99; there are 12, counted from 0."
+        with pytest.raises(TimeoutError):
+            hear(other, "refused", timeout=0.2)
+
+
+def test_a_page_that_only_watches(view, sim):
+    token = view.watch_url.split("#token=")[1]
+    assert token not in view.url
+    with page(view, token=token) as ws:
+        assert hear(ws, "role") == "watch"
+        say(ws, op="credit", count=4)
+        hear(ws)
+        for op in ("pause", "restart", "reverse"):
+            say(ws, op=op)
+            assert hear(ws, "refused") == "This page may only watch."
+        say(ws, op="source")
+        assert "phase_3" in hear(ws, "source")["python"]
+    assert view._driver._playing
 
 
 def test_credit_is_capped(view):
     with page(view) as ws:
         for _ in range(5):
             say(ws, op="credit", count=4)
-        view._driver.order("playing", 0.0)
+        view._driver.order(Command("pause"))
         time.sleep(0.2)
         assert view._server._clients[0].credits <= 4
 
@@ -245,7 +298,7 @@ def test_too_many_pages(view):
     time.sleep(0.1)
     with page(view, token=token) as ws:
         say(ws, op="credit", count=1)
-        assert ws.recv(timeout=5)
+        assert hear(ws)
 
 
 def dead_page(view):
@@ -260,7 +313,7 @@ def dead_page(view):
     while protocol.state is not State.OPEN:
         protocol.receive_data(raw.recv(1))
     for message in (
-        {"op": "hello", "token": token, "version": 1},
+        {"op": "hello", "token": token, "version": VERSION},
         {"op": "credit", "count": 4},
     ):
         protocol.send_text(json.dumps(message).encode())
@@ -276,12 +329,12 @@ def test_dead_pages_slow_nobody():
             dead.enter_context(dead_page(view))
         with page(view) as ws:
             say(ws, op="credit", count=1)
-            ws.recv(timeout=5)
+            hear(ws)
             assert sum(client.busy for client in view._server._clients) >= 3
             before, clock = sim.time, time.perf_counter()
             for _ in range(30):
                 say(ws, op="credit", count=1)
-                ws.recv(timeout=5)
+                hear(ws)
             rate = (sim.time - before) / (time.perf_counter() - clock)
             assert sum(client.busy for client in view._server._clients) >= 3
     assert rate > 0.7 * sim.pace
@@ -302,9 +355,38 @@ def test_ports_that_do_not_exist(sim, port):
         serve(sim, port=port, open_browser=False)
 
 
-def test_other_hosts_are_refused(sim):
-    with pytest.raises(InputError, match="this machine only"):
-        serve(sim, host="0.0.0.0", open_browser=False)
+@pytest.mark.parametrize("host", ["", "example.org", "256.0.0.1", "::1", "0.0.0.0.0"])
+def test_hosts_that_are_no_addresses_are_refused(sim, host):
+    with pytest.raises(InputError, match=r"give an address of this machine such as \d"):
+        serve(sim, host=host, open_browser=False)
+
+
+def test_addresses_of_other_machines_are_refused(sim):
+    with pytest.raises(FileError, match=r"192.0.2.1 is no address of this machine; give one of"):
+        serve(sim, host="192.0.2.1", open_browser=False)
+
+
+def test_a_classroom_is_let_in_by_address_alone(sim, monkeypatch):
+    """0.0.0.0 answers under the machine's own addresses and under no other name."""
+    monkeypatch.setattr("carom.view.network.own_addresses", lambda: ["127.0.0.2"])
+    with LiveView(sim, host="0.0.0.0") as view:
+        assert view.is_public
+        assert view.url.startswith("http://127.0.0.2:")
+        port = view._socket.getsockname()[1]
+        assert request(view, host=f"127.0.0.2:{port}")[0] == 200
+        assert request(view, host=f"127.0.0.1:{port}")[0] == 200
+        for host in ("evil.example", f"evil.example:{port}", f"0.0.0.0:{port}"):
+            assert request(view, host=host)[0] == 403
+        url = f"ws://127.0.0.1:{port}/live"
+        with pytest.raises(InvalidStatus), connect(url, origin="http://evil.example"):
+            pass
+        with page(view) as ws:
+            assert hear(ws, "role") == "control"
+
+
+def test_own_addresses_are_addresses():
+    for address in network.own_addresses():
+        assert ipaddress.IPv4Address(address) is not None
 
 
 def test_only_this_machine_is_listened_to(view):
@@ -324,7 +406,7 @@ def test_the_simulation_is_whole_afterwards(sim):
     with LiveView(sim) as view, page(view) as ws:
         say(ws, op="credit", count=4)
         for _ in range(4):
-            ws.recv(timeout=5)
+            hear(ws)
     before = sim.time
     sim.run(duration=10)
     assert sim.time == before + 10
@@ -334,7 +416,7 @@ def test_ctrl_c_ends_it_without_a_word():
     program = (
         "import carom; from carom import scenes; from carom.view import serve;"
         "serve(carom.Simulation(scenes.phase_3()), open_browser=False,"
-        " on_ready=lambda url: print(url, flush=True)); print('ended')"
+        " on_ready=lambda view: print(view.url, flush=True)); print('ended')"
     )
     with subprocess.Popen(
         [sys.executable, "-c", program],

@@ -20,7 +20,7 @@ from carom.cli.story import TOLD, story
 from carom.errors import InputError, RunError
 from carom.simulation import Simulation
 from carom.state import State
-from carom.view import serve
+from carom.view import LiveView, serve
 
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
 DEFAULT_SCENE = "phase-4"
@@ -137,6 +137,13 @@ def show(
     context: typer.Context,
     scene: SceneName = DEFAULT_SCENE,
     port: Annotated[str, typer.Option(metavar="N", help="0 takes a free one.")] = "0",
+    host: Annotated[
+        str,
+        typer.Option(
+            metavar="ADDRESS",
+            help="127.0.0.1 is this machine only; 0.0.0.0 lets others in the network see it.",
+        ),
+    ] = "127.0.0.1",
     no_browser: Annotated[
         bool, typer.Option("--no-browser", metavar="", help="Only print the address.")
     ] = False,
@@ -155,17 +162,22 @@ def show(
     assert number is not None
     sim = found.simulation(method, parsed("tick", tick))
 
-    def ready(address: str) -> None:
+    def ready(view: LiveView) -> None:
         if json:
-            report.write_json({"address": address, "scene": found.name, "n": len(sim)})
+            addresses = {"address": view.url}
+            if view.is_public:
+                addresses["watch_address"] = view.watch_url
+            report.write_json({**addresses, "scene": found.name, "n": len(sim)})
         elif quiet:
-            report.output().print(address, soft_wrap=True)
+            report.output().print(view.url, soft_wrap=True)
         else:
             line = Text("carom shows ").append(found.text, style="bold").append(" at ")
-            line.append(address, style="cyan underline").append("   (Ctrl-C ends it)")
+            line.append(view.url, style="cyan underline").append("   (Ctrl-C ends it)")
             report.output().print(line, soft_wrap=True)
+        if view.is_public and not json:
+            report.warn_of_network(view.watch_url)
 
-    serve(sim, port=number, open_browser=not no_browser, on_ready=ready)
+    serve(sim, host=host, port=number, open_browser=not no_browser, on_ready=ready)
 
 
 @app.command(context_settings=LOOSE)

@@ -8,11 +8,7 @@ from rich.text import Text
 import carom
 from carom.cli import report
 from carom.cli.running import Goal, execute
-from carom.cli.source import TICKS_PER_SECOND, Source
-from carom.reference.tick import TickEngine
-from carom.simulation import Simulation
-from carom.state import State
-from carom.world import World
+from carom.cli.source import Source
 
 
 def compare(source: Source, aim: Goal, tick: float | None, *, quiet: bool) -> dict[str, Any]:
@@ -30,29 +26,22 @@ def compare(source: Source, aim: Goal, tick: float | None, *, quiet: bool) -> di
     KeyboardInterrupt
         At Ctrl-C: half a comparison says nothing.
     """
-    step = source.scene.pace / TICKS_PER_SECOND if tick is None else tick
-    engines: list[TickEngine] = []
-
-    def ticking(state: State, world: World) -> TickEngine:
-        engines.append(TickEngine(state, world, step, count_missed=True))
-        return engines[-1]
-
+    exact = source.simulation("exact")
+    ticking = exact.in_ticks(tick)
     data: dict[str, Any] = {
         "scene": source.name,
         "options": source.options,
         "seed": source.scene.seed,
         "version": carom.__version__,
-        "tick_length": step,
+        "tick_length": ticking.tick,
         "n": len(source.scene.spheres),
         "until": aim.value,
     }
-    runs = {"exact": source.simulation("exact"), "tick": Simulation(source.scene, method=ticking)}
-    for name, sim in runs.items():
+    for name, sim in {"exact": exact, "tick": ticking}.items():
         outcome = execute(sim, aim, quiet=quiet, label=name)
         if not outcome.complete:
             raise KeyboardInterrupt
-        missed = engines[-1].missed if name == "tick" and engines else 0
-        data[name] = {**report.numbers(sim, outcome.seconds), "missed": missed}
+        data[name] = {**report.numbers(sim, outcome.seconds), "missed": sim.missed}
     return data
 
 

@@ -29,6 +29,18 @@ def complain(sentence: str) -> None:
     notes().print(line, soft_wrap=True)
 
 
+def warn_of_network(address: str) -> None:
+    """Say on standard error what it means that others can see a view, and their address of it."""
+    line = Text("To let others watch: ").append(address, style="cyan underline")
+    notes().print(line, soft_wrap=True)
+    warning = (
+        "Warning: everybody in this network who has the first address can control the "
+        "simulation, and who has the second can watch it; nothing is encrypted. "
+        "Use it among people you trust."
+    )
+    notes().print(warning, style="yellow", soft_wrap=True)
+
+
 def write_json(data: Any) -> None:
     """Write one JSON document on standard output."""
     output().print(json.dumps(data, allow_nan=False), soft_wrap=True, markup=False)

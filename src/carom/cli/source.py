@@ -8,17 +8,16 @@ from typing import Any
 from carom import scenes
 from carom.checks import nearest, number
 from carom.errors import InputError, UnknownNameError
+from carom.methods import METHODS, TICKS_PER_SECOND
 from carom.scene import Scene
 from carom.scene_file import load
-from carom.simulation import METHODS, Simulation
+from carom.simulation import Simulation
 
 #: Options of the commands themselves, so that a misspelt one gets the right suggestion.
 COMMAND_OPTIONS = (
     "until", "collisions", "events", "method", "tick", "seed", "json", "quiet",
-    "debug", "port", "no-browser", "help",
+    "debug", "port", "host", "no-browser", "help",
 )  # fmt: skip
-#: The paper shows 60 ticks per second at speed 1.
-TICKS_PER_SECOND = 60
 
 
 @dataclass(frozen=True)

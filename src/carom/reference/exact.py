@@ -6,6 +6,7 @@ carried out; the entries of the spheres it changed are worked out anew.
 """
 
 import math
+import pickle
 from time import perf_counter
 from typing import Any
 
@@ -189,6 +190,14 @@ class ExactEngine:
         return deepest
 
     # What happens next
+
+    def checkpoint(self) -> bytes:
+        """Everything the engine knows: `restore` then continues with the same bits."""
+        return pickle.dumps(vars(self))
+
+    def restore(self, checkpoint: bytes) -> None:
+        """Continue from a checkpoint of an engine built from the same state and world."""
+        vars(self).update(pickle.loads(checkpoint))
 
     def _predict_pair(self, i: int, j: int, now: float) -> None:
         """Put the next meeting of i and j, in whatever image, into the table.

@@ -6,6 +6,7 @@ fast balls tunnel, a ball outside a wall by more than one tick's motion flips ev
 """
 
 import math
+import pickle
 from collections.abc import Iterator
 from time import perf_counter
 from typing import Any
@@ -216,6 +217,14 @@ class TickEngine:
     def max_overlap(self) -> float:
         """Largest (sigma - r) / sigma at the end of any tick; 0 if nothing ever overlapped."""
         return self._deepest
+
+    def checkpoint(self) -> bytes:
+        """Everything the engine knows: `restore` then continues with the same bits."""
+        return pickle.dumps(vars(self))
+
+    def restore(self, checkpoint: bytes) -> None:
+        """Continue from a checkpoint of an engine built from the same state and world."""
+        vars(self).update(pickle.loads(checkpoint))
 
     def _still(self) -> bool:
         """Whether nothing moves and nothing pulls."""

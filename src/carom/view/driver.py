@@ -2,31 +2,27 @@
 
 import threading
 import time
+from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
-from carom.errors import CaromError
-from carom.state import State
-from carom.view.portrait import Viewable, portrait
-from carom.view.protocol import Meters, encode_frame, encode_scene
+from carom.errors import CaromError, CollapseError
+from carom.view.announcer import Announcer
+from carom.view.protocol import Command, encode_text
+from carom.view.snapshot import Snapshot
+from carom.view.stage import Stage
+from carom.view.viewable import Viewable
 
 INTERVAL = 1 / 60  #: seconds between frames
 SHARE = 0.7  #: of an interval for computing; the rest is for the frame and the page
 PATIENCE = 0.04  #: seconds after which a run that takes longer than foreseen is cut short
 IDLE = 0.25  #: seconds between looks around while nothing moves
-METERS_EVERY = 0.1  #: seconds between readings of the energies, which read all spheres again
+#: Of several in a row only the newest counts: sliders send many.
+SLIDERS = frozenset({"speed", "rule", "walls", "gravity", "scene"})
+#: What makes time run again after a failure.
+CURES = frozenset({"restart", "scene", "back", "compare"})
 
-
-@dataclass(frozen=True, slots=True)
-class Snapshot:
-    """What pages may be sent: the newest frame and the scene it belongs to."""
-
-    number: int
-    frame: bytes
-    scene_number: int
-    scene: bytes
-    failure: str
+Reply = Callable[[str], None]
 
 
 class _Enough(Exception):
@@ -85,16 +81,14 @@ class Driver:
         self._wake = threading.Event()
         self._stopping = False
         self._lock = threading.Lock()
-        self._orders: dict[str, float] = {}
+        self._orders: deque[tuple[Command, Reply]] = deque()
         self._thread = threading.Thread(target=self._main, name="carom-view-run", daemon=True)
         self._pacer = Pacer()
+        self._stage = Stage(sim, lambda: self._stopping)
+        self._announcer = Announcer(self._stage)
         self._playing, self._speed, self._reached = True, 1.0, 0.0
         self._failure = ""
-        self._epoch = self._number = self._scene_number = 0
-        self._scene, self._described = b"", -1
         self._changed = True
-        self._read_at = -1.0
-        self._energies = (0.0, 0.0, 0.0, 0.0)
         #: What ended the thread before its time, if anything did.
         self.error: BaseException | None = None
         #: Called when the thread ends.
@@ -111,10 +105,12 @@ class Driver:
         if self._thread.ident is not None:
             self._thread.join()
 
-    def order(self, what: str, value: float = 1.0) -> None:
-        """Ask for "playing" (0 or 1), "speed" or "restart"; the newest of each counts."""
+    def order(self, command: Command, reply: Reply = lambda text: None) -> None:
+        """Ask for what a page can ask for; `reply` is told what could not be done."""
         with self._lock:
-            self._orders[what] = value
+            if self._orders and command.op in SLIDERS and self._orders[-1][0].op == command.op:
+                self._orders.pop()
+            self._orders.append((command, reply))
         self._wake.set()
 
     def poke(self) -> None:
@@ -152,22 +148,33 @@ class Driver:
 
     def _obey(self) -> None:
         with self._lock:
-            orders, self._orders = self._orders, {}
-        if not orders:
-            return
-        if "speed" in orders:
-            self._speed = orders["speed"]
-        if "playing" in orders:
-            self._playing = bool(orders["playing"]) and not self._failure
-        if "restart" in orders:
-            self._sim.reset()
-            self._failure = ""
-            self._playing = bool(orders.get("playing", 1.0))
-            self._epoch += 1
-            self._read_at = -1.0
-            self._reached = 0.0
-            self._run(0.0)
-        self._changed = True
+            orders, self._orders = self._orders, deque()
+        for command, reply in orders:
+            try:
+                self._do(command, reply)
+            except CollapseError as error:
+                self._fail(error)
+            except CaromError as error:
+                reply(encode_text("refused", _sentence(error)))
+            self._changed = True
+
+    def _do(self, command: Command, reply: Reply) -> None:
+        if command.op == "speed":
+            self._speed = command["value"]
+        elif command.op in ("play", "pause"):
+            self._playing = command.op == "play" and not self._failure
+        elif command.op == "source":
+            reply(encode_text("source", self._announcer.source()))
+        else:
+            if command.op in ("step", "back"):
+                self._playing = False
+            self._stage.act(command)
+            if command.op in CURES:
+                if command.op == "restart" or self._failure:
+                    self._playing = command.op != "back"
+                self._failure = ""
+                self._reached = 0.0
+                self._run(0.0)
 
     def _step(self, seconds: float) -> None:
         """Run for as much simulated time as `seconds` of the clock stand for."""
@@ -193,52 +200,28 @@ class Driver:
                 raise _Enough
 
         try:
-            self._sim.run(duration=duration, progress=look)
+            self._stage.run(duration, look)
         except _Enough:
             pass
         except CaromError as error:
-            self._failure, self._playing = str(error), False
+            self._fail(error)
+
+    def _fail(self, error: CaromError) -> None:
+        self._failure, self._playing = _sentence(error), False
 
     def _hand_out(self) -> None:
-        state = self._sim.state
-        self._describe(state)
-        self._number += 1
-        clock = time.perf_counter()
-        kinetic, potential, dissipated, drift = self._read_energies(clock)
-        gx, gy, gz = self._sim.world.gravity.tolist()
-        meters = Meters(
-            clock=clock,
-            gravity=(gx, gy, gz),
-            kinetic=kinetic,
-            potential=potential,
-            dissipated=dissipated,
-            drift=drift,
-            speed=self._speed,
-            reached=self._reached,
-            epoch=self._epoch,
-            scene=self._scene_number,
-            playing=self._playing,
-            failed=bool(self._failure),
-        )
-        frame = encode_frame(state, meters)
         self._changed = False
-        self._publish(Snapshot(self._number, frame, self._scene_number, self._scene, self._failure))
-
-    def _describe(self, state: State) -> None:
-        """Make the scene message, again after every jump of the motion."""
-        if self._described == self._epoch:
-            return
-        self._described = self._epoch
-        self._scene_number += 1
-        self._scene = encode_scene(state, self._scene_number, portrait(self._sim, state))
-
-    def _read_energies(self, clock: float) -> tuple[float, float, float, float]:
-        if self._read_at < 0 or clock - self._read_at > METERS_EVERY or not self._playing:
-            sim, self._read_at = self._sim, clock
-            self._energies = (
-                sim.kinetic_energy,
-                sim.potential_energy,
-                sim.dissipated,
-                sim.energy_drift,
+        self._publish(
+            self._announcer.snapshot(
+                playing=self._playing,
+                speed=self._speed,
+                reached=self._reached,
+                failure=self._failure,
             )
-        return self._energies
+        )
+
+
+def _sentence(error: CaromError) -> str:
+    """What a `CaromError` says, as a sentence on a page."""
+    text = str(error)
+    return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")

@@ -1,5 +1,6 @@
 """The page's files: a fixed table read once, so no request ever names a path on the disk."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -32,6 +33,7 @@ TABLE = {
             "shaders",
             "timeline",
             "walls",
+            "wire",
         )
     },
 }
@@ -55,12 +57,18 @@ def load() -> dict[str, StaticFile]:
     }
 
 
-def security_headers(port: int) -> dict[str, str]:
-    """Headers that let the page load from, and talk to, this server alone."""
+def security_headers(hosts: Collection[str]) -> dict[str, str]:
+    """Headers that let the page load from, and talk to, this server alone.
+
+    Parameters
+    ----------
+    hosts : collection of str
+        Where the server is reached, with the port.
+    """
     # Safari before 15.4 does not count ws: as 'self', so the sockets are named.
-    sockets = f"ws://127.0.0.1:{port} ws://localhost:{port}"
+    sockets = " ".join(f"ws://{host}" for host in sorted(hosts))
     policy = (
-        f"default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; "
+        f"default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "
         f"connect-src 'self' {sockets}; base-uri 'none'; form-action 'none'; "
         f"frame-ancestors 'none'"
     )

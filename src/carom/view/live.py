@@ -1,73 +1,86 @@
 """Opens and closes the live view."""
 
-import errno
-import secrets
-import socket
 import threading
 import webbrowser
 from collections.abc import Callable
 from types import TracebackType
 from typing import Self
 
-from carom.errors import FileError, InputError
+from carom.errors import InputError
+from carom.view import network, tokens
+from carom.view.catalogue import catalogue
 from carom.view.driver import Driver
-from carom.view.portrait import Viewable
+from carom.view.files import load
+from carom.view.protocol import encode_text
 from carom.view.server import Server
-
-LOOPBACK = ("127.0.0.1", "localhost")
+from carom.view.viewable import Viewable
 
 
 class LiveView:
-    """A simulation shown on this machine for as long as a ``with`` block lasts.
+    """A simulation shown in browsers for as long as a ``with`` block lasts.
 
     Parameters
     ----------
     sim : Simulation
         Used only by the view until it is closed.
-    host : {"127.0.0.1", "localhost"}
+    host : str
+        "127.0.0.1" shows it on this machine only. An address of this machine in a network, or
+        "0.0.0.0" for all of them, shows it to everybody there who has an address of the page;
+        the connection is not encrypted.
     port : int
-        0 takes a free one.
+        0 takes a free one. Another keeps its token for a week, so that pages that are open
+        go on when the program is started again.
 
     Attributes
     ----------
     url : str
-        Address of the page, once it is open. The part after ``#`` is a password of this run:
+        Address of the page, once it is open. The part after ``#`` is a password:
         browsers send it to nobody, and the page removes it from the address bar.
+    watch_url : str
+        The same for pages that may watch but not control.
 
     Raises
     ------
     FileError
-        If the port cannot be used.
+        If the port or the address cannot be used.
     InputError
-        If the host is not this machine.
+        If the host or the port is none.
     """
 
     url: str
+    watch_url: str
 
     def __init__(self, sim: Viewable, *, host: str = "127.0.0.1", port: int = 0) -> None:
-        if host not in LOOPBACK:
-            msg = f"host is {host!r}; the live view is shown on this machine only: 127.0.0.1"
-            raise InputError(msg)
         if isinstance(port, bool) or not isinstance(port, int) or not 0 <= port <= 65535:
             msg = f"port is {port!r}; it must be a whole number from 0 (any free one) to 65535"
             raise InputError(msg)
+        self._names = network.reached_as(host)
         self._sim, self._host, self._port = sim, host, port
         self._ended = threading.Event()
 
+    @property
+    def is_public(self) -> bool:
+        """Whether other machines can reach it."""
+        return self._host not in network.LOOPBACK
+
     def __enter__(self) -> Self:
-        token = secrets.token_urlsafe(24)
-        self._socket = _listen(self._port)
+        self._socket = network.listen(self._host, self._port)
+        token, watch = (tokens.of_port(self._port, role) for role in ("control", "watch"))
         self._server = Server(
             self._socket,
-            token,
-            order=lambda what, value: self._driver.order(what, value),
+            self._names,
+            {token: "control", watch: "watch"},
+            load(),
+            order=lambda command, reply: self._driver.order(command, reply),
             poke=lambda: self._driver.poke(),
+            welcome=(encode_text("catalogue", catalogue()),),
         )
         self._driver = Driver(
             self._sim, self._server.publish, self._server.hungry, self._server.watched
         )
         self._driver.on_end = self._ended.set
-        self.url = f"http://{self._host}:{self._socket.getsockname()[1]}/#token={token}"
+        page = f"http://{self._names[0]}:{self._socket.getsockname()[1]}/#token="
+        self.url, self.watch_url = page + token, page + watch
         self._server.start()
         self._driver.start()
         return self
@@ -97,7 +110,7 @@ def serve(
     host: str = "127.0.0.1",
     port: int = 0,
     open_browser: bool = True,
-    on_ready: Callable[[str], object] | None = None,
+    on_ready: Callable[[LiveView], object] | None = None,
 ) -> None:
     """Show a simulation live in the browser until Ctrl-C.
 
@@ -106,36 +119,27 @@ def serve(
     Parameters
     ----------
     sim : Simulation
-    host : {"127.0.0.1", "localhost"}
+    host : str
+        See `LiveView`.
     port : int
         0 takes a free one.
     open_browser : bool
     on_ready : callable, optional
-        Called with the page's address once it can be opened.
+        Called with the view, whose `url` can be opened then.
 
     Raises
     ------
     FileError
-        If the port cannot be used.
+        If the port or the address cannot be used.
     InputError
-        If the host is not this machine.
+        If the host or the port is none.
     """
     with LiveView(sim, host=host, port=port) as view:
         try:
             if on_ready is not None:
-                on_ready(view.url)
+                on_ready(view)
             if open_browser:
                 webbrowser.open(view.url)
             view.wait()
         except KeyboardInterrupt:
             return
-
-
-def _listen(port: int) -> socket.socket:
-    """Return a socket on the loopback address of this machine."""
-    try:
-        return socket.create_server(("127.0.0.1", port))
-    except OSError as error:
-        why = "is in use" if error.errno == errno.EADDRINUSE else f"cannot be used ({error})"
-        msg = f"port {port} {why}; choose another, or 0 for any free one"
-        raise FileError(msg) from error

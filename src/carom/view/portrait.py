@@ -1,71 +1,35 @@
 """What a page must know of a scene besides the motion: walls, colours, scales, where to look."""
 
 import math
-from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
+from carom import mechanics
 from carom.scene import Scene
 from carom.state import State
+from carom.view.viewable import Viewable
+from carom.walls import wall_names
 from carom.world import World
 
 #: Kinetic energy at which the paper's saturation KE/5 reaches 100 percent.
 PAPER_FULL = 500.0
 
 
-class Viewable(Protocol):
-    """What the live view uses of a simulation."""
+def portrait(sim: Viewable, state: State, key: int) -> dict[str, Any]:
+    """Describe a scene for the page, as plain lists and numbers fit for JSON.
 
-    @property
-    def scene(self) -> Scene | None:
-        """Where it started from."""
-
-    @property
-    def state(self) -> State:
-        """A copy of the spheres now."""
-
-    @property
-    def world(self) -> World:
-        """Everything but the spheres."""
-
-    @property
-    def pace(self) -> float:
-        """Simulated time per second at speed 1."""
-
-    @property
-    def time(self) -> float:
-        """Simulated time."""
-
-    @property
-    def kinetic_energy(self) -> float:
-        """Of all free spheres."""
-
-    @property
-    def potential_energy(self) -> float:
-        """Of all free spheres."""
-
-    @property
-    def dissipated(self) -> float:
-        """Energy taken by inelastic collisions."""
-
-    @property
-    def energy_drift(self) -> float:
-        """Relative error of the energy."""
-
-    def run(self, *, duration: float, progress: Callable[[Any], object]) -> None:
-        """Let time run; `progress` is called now and then and may raise to end the run."""
-
-    def reset(self) -> None:
-        """Go back to the start."""
-
-
-def portrait(sim: Viewable, state: State) -> dict[str, Any]:
-    """Describe a scene for the page, as plain lists and numbers fit for JSON."""
+    `key` changes when another scene was loaded, so that the page begins afresh.
+    """
     scene, world = sim.scene, sim.world
     camera = scene.camera if scene else None
+    origin = scene.origin if scene else None
     low, high = _extent(state)
     return {
+        "key": key,
+        "origin": None if origin is None else {"name": origin.name, "options": origin.options},
+        "method": sim.method if isinstance(sim.method, str) else "exact",
+        "free_axes": len(mechanics.conserved_axes(state, world)),
         "title": scene.title if scene else "",
         "pace": sim.pace,
         "wire": bool(scene.wire) if scene else False,
@@ -81,8 +45,9 @@ def portrait(sim: Viewable, state: State) -> dict[str, Any]:
                 "kind": int(wall["kind"]),
                 "normal": wall["normal"].tolist(),
                 "offset": float(wall["offset"]),
+                "name": name.removeprefix("the "),
             }
-            for wall in world.walls
+            for wall, name in zip(world.walls, wall_names(sim.walls), strict=True)
         ],
         "low": low,
         "high": high,
@@ -99,7 +64,7 @@ def _extent(state: State) -> tuple[list[float], list[float]]:
 
 
 def _scales(scene: Scene | None, state: State, world: World) -> dict[str, float]:
-    """Kinetic energy of full saturation, and speed at the end of the colour scale.
+    """Kinetic energy of full saturation, and where the scales of speed and gravity end.
 
     Scenes in the paper's look keep the paper's number: saturation is KE/5 percent, so full at
     500. Others have other units: there it is three times the mean energy of a free sphere,
@@ -108,15 +73,19 @@ def _scales(scene: Scene | None, state: State, world: World) -> dict[str, float]
     """
     free = ~state.fixed
     if not free.any():
-        return {"full_energy": 1.0, "full_speed": 1.0}
+        return {"full_energy": 1.0, "full_speed": 1.0, "full_gravity": 1.0}
     mass, squares = state.mass[free], (state.velocity[free] ** 2).sum(axis=1)
     fall = float(np.ptp(state.position[free] @ world.gravity))
     energy = max(float((mass * squares).mean()) / 2, float(mass.mean()) * fall / 3)
     speed = math.sqrt(max(float(squares.mean()), fall))
     paper = scene is not None and scene.wire and scene.color == "energy"
+    # A sphere of the mean energy then rises a fifth of the way across the world.
+    across = float(np.ptp(state.position, axis=0).max()) or float(state.radius.max())
+    strength = max(2.5 * float(squares.mean()) / across, 2 * float(np.abs(world.gravity).max()))
     return {
         "full_energy": PAPER_FULL if paper else _round(3 * energy),
         "full_speed": _round(2 * speed),
+        "full_gravity": _round(strength),
     }
 
 

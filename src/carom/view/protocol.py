@@ -1,88 +1,51 @@
 """What the live view and its page say to each other; `static/protocol.js` is the other side.
 
-Server to page, binary, little-endian. Both kinds begin with the same 24 bytes:
+The tables of numbers, flags and operations are in `carom.view.wire`. In words:
 
-====== ========= ==============================================================
-offset type      meaning
-====== ========= ==============================================================
-0      char[4]   "CARO"
-4      u2        version of this protocol
-6      u2        kind: 1 frame, 2 scene
-8      u4        n, number of spheres
-12     u4        epoch: counts jumps of the motion (restarts)
-16     u4        frame: flags, 1 = playing, 2 = failed; scene: bytes of its JSON
-20     u4        scene number: a frame belongs to the scene sent under this number
-====== ========= ==============================================================
+**Server to page, binary**, little-endian. Both kinds begin with `wire.HEADER`: "CARO", version,
+kind (1 frame, 2 scene), n spheres, the epoch, flags, the scene's number. The epoch counts jumps of
+the motion (restarts, steps back, reversals); a frame belongs to the scene sent under its number.
 
-A **frame** goes on with doubles, 128 bytes of header in all:
+A **frame** goes on with the doubles of `wire.METERS`, then positions f4[3n], velocities f4[3n] and
+counts u4[n]: impulses received since the start, with the top bit set where gravity does not act.
+While exact motion and ticks run side by side, a second frame of the ticks follows each, flagged
+TWIN.
 
-====== ========= ==============================================================
-24     f8        t, simulated time
-32     f8        clock of the server in seconds, when the simulation was at t
-40     f8[3]     g, acceleration of free spheres
-64     f8        kinetic energy
-72     f8        potential energy
-80     f8        energy taken by inelastic collisions
-88     f8        energy drift, relative
-96     f8        collisions between spheres
-104    f8        collisions with walls
-112    f8        speed asked for, in multiples of the scene's pace
-120    f8        speed reached
-128    f4[3n]    positions
-..     f4[3n]    velocities
-..     u1[n]     impulses received, modulo 128; top bit: no gravity (fixed or resting)
-====== ========= ==============================================================
+A **scene** has the size of its JSON part instead of flags. It goes on with that JSON (padded with
+spaces to a multiple of four bytes), then radius f4[n], mass f4[n] (infinite where fixed), colour
+u4[n] (0xRRGGBB) and species u4[n]. It is sent before the first frame and again when something in
+it has changed.
 
-A **scene** goes on with JSON (padded with spaces to a multiple of four bytes), then radius
-f4[n], mass f4[n] (infinite where fixed), colour u4[n] (0xRRGGBB) and species u4[n]. It is sent
-before the first frame and again when something in it has changed.
+**Server to page, text**: JSON objects with one key. Notes are repeated to pages that come later
+and sent again when they change; answers go to the page that asked.
 
-Server to page, text: ``{"failure": "one sentence"}`` when the simulation cannot go on.
+========= =================== ==================================================================
+key       when                value
+========= =================== ==================================================================
+catalogue once, note          scenes of the library with their options
+role      once, note          "control" or "watch"
+failure   note                a sentence, "" when all is well again
+settings  note                restitution, wall_restitution, contact_time, gravity, comparing, tick
+event     note                the collision that a step has led to: t, i, j, impulse, serial
+walls     note                pressure of each wall, theory, duration averaged over
+refused   answer              a sentence: why a command could not be done
+source    answer              python, toml, command: the simulation as text
+========= =================== ==================================================================
 
-Page to server, text, at most `MAX_MESSAGE` bytes, an object with exactly these keys:
-
-=========== ==================== ==============================================
-op          other keys           meaning
-=========== ==================== ==============================================
-hello       token, version       must come first
-credit      count 1 ... 4        that many more frames may be sent
-play, pause                      let time run, or not
-speed       value 0.001 ... 100  in multiples of the scene's pace
-restart                          back to the start
-=========== ==================== ==============================================
+**Page to server**: text of at most `wire.MAX_MESSAGE` characters, a JSON object with "op" and
+exactly the keys of `wire.OPERATIONS`.
 """
 
 import json
-import math
-import struct
-from dataclasses import dataclass
-from typing import Any, NoReturn
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from carom.errors import InputError
 from carom.state import State
-
-MAGIC = b"CARO"
-VERSION = 1
-FRAME, SCENE = 1, 2
-PLAYING, FAILED = 1, 2
-STILL = 0x80  #: bit of a count byte: gravity does not act on this sphere
-FRAME_HEADER = struct.Struct("<4sHHIIII13d")
-SCENE_HEADER = struct.Struct("<4sHHIIII")
-MAX_MESSAGE = 1024
-MAX_CREDITS = 4
-SLOWEST, FASTEST = 1e-3, 100.0
-
-#: Keys of each operation besides "op".
-OPERATIONS: dict[str, frozenset[str]] = {
-    "hello": frozenset({"token", "version"}),
-    "credit": frozenset({"count"}),
-    "play": frozenset(),
-    "pause": frozenset(),
-    "speed": frozenset({"value"}),
-    "restart": frozenset(),
-}
+from carom.view import wire
+from carom.view.wire import FRAME_HEADER, SCENE_HEADER, refuse
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,40 +60,52 @@ class Meters:
     drift: float
     speed: float
     reached: float
+    momentum: tuple[float, float, float]
+    temperature: float
     epoch: int
     scene: int
-    playing: bool
-    failed: bool
+    missed: int = 0
+    overlap: float = 0.0
+    playing: bool = True
+    failed: bool = False
+    twin: bool = False
+    reversed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """A checked message from a page."""
+    """A checked message from a page: an operation and its values by key."""
 
     op: str
-    count: int = 0
-    value: float = 0.0
-    token: str = ""
-    version: int = 0
+    values: dict[str, Any] = field(default_factory=dict)
+
+    def __getitem__(self, key: str) -> Any:
+        return self.values[key]
 
 
 def encode_frame(state: State, meters: Meters) -> bytes:
-    """Pack one frame, 128 + 25 n bytes."""
+    """Pack one frame, `wire.FRAME_HEADER.size` + 28 n bytes."""
     m = meters
-    flags = PLAYING * m.playing | FAILED * m.failed
+    flags = (
+        wire.PLAYING * m.playing
+        | wire.FAILED * m.failed
+        | wire.TWIN * m.twin
+        | wire.REVERSED * m.reversed
+    )
     header = FRAME_HEADER.pack(
-        *(MAGIC, VERSION, FRAME, len(state), m.epoch, flags, m.scene),
+        *(wire.MAGIC, wire.VERSION, wire.FRAME, len(state), m.epoch, flags, m.scene),
         *(state.time, m.clock, *m.gravity, m.kinetic, m.potential, m.dissipated, m.drift),
         *(state.collisions, state.wall_collisions, m.speed, m.reached),
+        *(*m.momentum, m.temperature, m.missed, m.overlap),
     )
-    still = state.fixed | state.resting
-    counts = (state.collision_count & 0x7F).astype(np.uint8) | still * np.uint8(STILL)
+    still = (state.fixed | state.resting).astype(np.uint32)
+    counts = state.collision_count & np.uint32(wire.STILL - 1) | still * np.uint32(wire.STILL)
     return b"".join(
         (
             header,
             state.position.astype("<f4").tobytes(),
             state.velocity.astype("<f4").tobytes(),
-            counts.tobytes(),
+            counts.astype("<u4").tobytes(),
         )
     )
 
@@ -139,7 +114,7 @@ def encode_scene(state: State, number: int, about: dict[str, Any]) -> bytes:
     """Pack the scene message; `about` is its JSON part."""
     text = json.dumps(about, allow_nan=False).encode()
     text += b" " * (-len(text) % 4)
-    head = (MAGIC, VERSION, SCENE, len(state), 0, len(text), number)
+    head = (wire.MAGIC, wire.VERSION, wire.SCENE, len(state), 0, len(text), number)
     return b"".join(
         (
             SCENE_HEADER.pack(*head),
@@ -152,52 +127,30 @@ def encode_scene(state: State, number: int, about: dict[str, Any]) -> bytes:
     )
 
 
+def encode_text(key: str, value: Any) -> str:
+    """Write a text message."""
+    return json.dumps({key: value}, allow_nan=False)
+
+
 def decode_command(text: object) -> Command:
     """Check a message from a page.
 
     Raises
     ------
     InputError
-        If it is not exactly one of the operations with numbers in range.
+        If it is not exactly one of the operations with values that fit.
     """
-    if not isinstance(text, str) or len(text) > MAX_MESSAGE:
-        _refuse(f"a message must be text of at most {MAX_MESSAGE} characters")
+    if not isinstance(text, str) or len(text) > wire.MAX_MESSAGE:
+        refuse(f"a message must be text of at most {wire.MAX_MESSAGE} characters")
     try:
-        message = json.loads(text, parse_constant=lambda name: _refuse(f"{name} is no number"))
+        message = json.loads(text, parse_constant=lambda name: refuse(f"{name} is no number"))
     except (ValueError, RecursionError) as error:
         msg = "a message must be JSON"
         raise InputError(msg) from error
-    op = message.get("op") if isinstance(message, dict) else None
-    if not isinstance(op, str) or op not in OPERATIONS:
-        _refuse("the operation is unknown")
-    if message.keys() - {"op"} != OPERATIONS[op]:
-        _refuse(f"{op} takes exactly these keys: {', '.join(sorted(OPERATIONS[op])) or 'none'}")
-    if op == "hello":
-        if not isinstance(message["token"], str):
-            _refuse("the token must be text")
-        return Command(op, token=message["token"], version=_whole(message, "version", 0, 2**16))
-    if op == "credit":
-        return Command(op, count=_whole(message, "count", 1, MAX_CREDITS))
-    if op == "speed":
-        return Command(op, value=_number(message, "value", SLOWEST, FASTEST))
-    return Command(op)
-
-
-def _number(message: dict[str, Any], key: str, low: float, high: float) -> float:
-    value = message[key]
-    fits = isinstance(value, int | float) and not isinstance(value, bool)
-    # Compared before it becomes a float: JSON knows whole numbers no float can hold.
-    if not fits or not low <= value <= high or not math.isfinite(value):
-        _refuse(f"{key} must be a number from {low} to {high}")
-    return float(value)
-
-
-def _whole(message: dict[str, Any], key: str, low: int, high: int) -> int:
-    value = _number(message, key, low, high)
-    if value != int(value):
-        _refuse(f"{key} must be a whole number")
-    return int(value)
-
-
-def _refuse(why: str) -> NoReturn:
-    raise InputError(why)
+    op = message.pop("op", None) if isinstance(message, dict) else None
+    if not isinstance(op, str) or op not in wire.OPERATIONS:
+        refuse("the operation is unknown")
+    keys = wire.OPERATIONS[op]
+    if message.keys() != keys.keys():
+        refuse(f"{op} takes exactly these keys: {', '.join(sorted(keys)) or 'none'}")
+    return Command(op, {key: kind.check(key, message[key]) for key, kind in keys.items()})

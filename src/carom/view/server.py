@@ -1,12 +1,13 @@
-"""Hands the page's files and the newest snapshot to browsers on this machine."""
+"""Hands the page's files and the newest snapshot to browsers."""
 
 import asyncio
 import hmac
-import json
 import logging
 import socket
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Mapping
+from contextlib import suppress
+from functools import partial
 from http import HTTPStatus
 
 from websockets.asyncio.server import ServerConnection
@@ -16,15 +17,26 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from carom.errors import InputError
-from carom.view.driver import Snapshot
-from carom.view.files import load, security_headers
-from carom.view.protocol import MAX_CREDITS, MAX_MESSAGE, VERSION, Command, decode_command
+from carom.view.files import StaticFile, security_headers
+from carom.view.protocol import Command, decode_command, encode_text
+from carom.view.snapshot import Snapshot
+from carom.view.wire import (
+    MAX_CREDITS,
+    MAX_MESSAGE,
+    REFUSED,
+    SOCKET_PATH,
+    TOO_MANY,
+    VERSION,
+    WRONG_TOKEN,
+)
 
-SOCKET_PATH = "/live"
-MAX_CLIENTS = 16
+MAX_CLIENTS = 64
+MAX_ANSWERS = 64  #: that may wait for a page which does not read them
 HELLO_WITHIN = 5.0  #: seconds
-#: Close codes; 1008 and 1013 are RFC 6455's, 4000 and up are for applications.
-REFUSED, TOO_MANY, WRONG_TOKEN = 1008, 1013, 4001
+#: What a page without the right to control may do.
+HARMLESS = frozenset({"credit", "source"})
+
+Reply = Callable[[str], None]
 
 #: websockets reports failed handshakes here; a program that wants to see them adds a handler.
 logger = logging.getLogger("carom.view")
@@ -34,17 +46,25 @@ logger.addHandler(logging.NullHandler())
 class Client:
     """One page: what it was sent, and how many frames it still takes."""
 
-    def __init__(self, connection: ServerConnection) -> None:
+    def __init__(self, connection: ServerConnection, controls: bool) -> None:
         self.connection = connection
+        self.controls = controls
         self.credits = 0
         self.number = self.scene_number = 0
-        self.failure = ""
+        self.notes: dict[str, int] = {}  # number of each note it was sent
+        self.answers: list[str] = []
         self.busy = False  # a message is still on its way out
         self.ready = asyncio.Event()
 
+    def answer(self, text: str) -> None:
+        """Send a text, in the server's thread, when the page reads."""
+        if len(self.answers) < MAX_ANSWERS:
+            self.answers.append(text)
+        self.ready.set()
+
 
 class Server:
-    """HTTP and WebSocket on one loopback socket, in a thread with its own event loop.
+    """HTTP and WebSocket on one socket, in a thread with its own event loop.
 
     The newest snapshot lies in one slot; each page takes it when it has credit. A page that
     stops reading keeps nobody waiting: its own task waits, and newer snapshots replace older.
@@ -52,28 +72,36 @@ class Server:
     Parameters
     ----------
     listening : socket
-        Bound to a loopback address.
-    token : str
-        What a page must say first.
+    hosts : collection of str
+        Names and addresses under which this machine is reached, without the port.
+    tokens : mapping
+        What a page must say first, and its role: "control" or "watch".
+    files : mapping
+        Each file by its address, see `carom.view.files`.
     order : callable
-        Takes "playing", "speed" or "restart" with its value.
+        Takes each `Command` of a page, and a callable that answers that page with a text.
     poke : callable
         Told when a page can take a frame.
+    welcome : collection of str
+        Texts sent to every page after it has said hello.
     """
 
     def __init__(
         self,
         listening: socket.socket,
-        token: str,
-        order: Callable[[str, float], None],
+        hosts: Collection[str],
+        tokens: Mapping[str, str],
+        files: Mapping[str, StaticFile],
+        order: Callable[[Command, Reply], None],
         poke: Callable[[], None],
+        welcome: Collection[str] = (),
     ) -> None:
-        self._socket, self._token, self._order, self._poke = listening, token, order, poke
-        self._port: int = listening.getsockname()[1]
-        self._hosts = {f"{name}:{self._port}" for name in ("127.0.0.1", "localhost")}
+        self._socket, self._tokens, self._files = listening, tokens, files
+        self._order, self._poke, self._welcome = order, poke, welcome
+        port: int = listening.getsockname()[1]
+        self._hosts = {f"{name}:{port}" for name in hosts}
         self._origins = {f"http://{host}" for host in self._hosts}
-        self._headers = security_headers(self._port)
-        self._files = load()
+        self._headers = security_headers(self._hosts)
         self._connected = 0
         # Replaced, never changed in place: the driver's thread reads it without a lock.
         self._clients: tuple[Client, ...] = ()
@@ -176,8 +204,11 @@ class Server:
             return
         self._connected += 1
         try:
-            if await self._greet(connection):
-                await self._attend(Client(connection))
+            if role := await self._greet(connection):
+                client = Client(connection, controls=role == "control")
+                for text in (encode_text("role", role), *self._welcome):
+                    client.answer(text)
+                await self._attend(client)
         except InputError as error:
             await connection.close(REFUSED, str(error)[:120])
         except ConnectionClosed:
@@ -185,22 +216,24 @@ class Server:
         finally:
             self._connected -= 1
 
-    async def _greet(self, connection: ServerConnection) -> bool:
-        """Wait for the token; nothing is said before it has come."""
+    async def _greet(self, connection: ServerConnection) -> str:
+        """Wait for a token and return its role; nothing is said before it has come."""
         try:
             async with asyncio.timeout(HELLO_WITHIN):
                 hello = decode_command(await connection.recv())
         except TimeoutError:
             await connection.close(REFUSED, "hello did not come in time")
-            return False
-        known = hmac.compare_digest(hello.token.encode(), self._token.encode())
-        if hello.op != "hello" or not known:
+            return ""
+        said = hello["token"].encode() if hello.op == "hello" else b""
+        role = ""
+        for token, kind in self._tokens.items():  # all of them, so that the time tells nothing
+            role = kind if hmac.compare_digest(said, token.encode()) else role
+        if not role:
             await connection.close(WRONG_TOKEN, "this page belongs to another run")
-            return False
-        if hello.version != VERSION:
+        elif hello["version"] != VERSION:
             await connection.close(REFUSED, "this page belongs to another version")
-            return False
-        return True
+            return ""
+        return role
 
     async def _attend(self, client: Client) -> None:
         """Read what a page says and send it snapshots, until it goes."""
@@ -214,26 +247,31 @@ class Server:
             sending.cancel()
 
     def _obey(self, client: Client, command: Command) -> None:
-        if command.op == "credit":
-            client.credits = min(client.credits + command.count, MAX_CREDITS)
-            client.ready.set()
-            self._poke()
-        elif command.op == "speed":
-            self._order("speed", command.value)
-        elif command.op == "restart":
-            self._order("restart", 1.0)
-        elif command.op in ("play", "pause"):
-            self._order("playing", float(command.op == "play"))
-        else:
+        if command.op == "hello":
             msg = "hello was said already"
             raise InputError(msg)
+        if command.op == "credit":
+            client.credits = min(client.credits + command["count"], MAX_CREDITS)
+            client.ready.set()
+            self._poke()
+        elif client.controls or command.op in HARMLESS:
+            self._order(command, partial(self._answer_from_afar, client))
+        else:
+            client.answer(encode_text("refused", "This page may only watch."))
+
+    def _answer_from_afar(self, client: Client, text: str) -> None:
+        """Answer a page from another thread."""
+        with suppress(RuntimeError):  # the loop has ended, and the page with it
+            self._loop.call_soon_threadsafe(client.answer, text)
 
     async def _send(self, client: Client) -> None:
-        """Send the newest snapshot whenever the page has credit and has not seen it."""
+        """Send answers, and the newest snapshot when the page has credit and has not seen it."""
         try:
             while True:
                 await client.ready.wait()
                 client.ready.clear()
+                while client.answers:
+                    await client.connection.send(client.answers.pop(0))
                 latest = self._latest
                 if latest is None or client.credits == 0 or latest.number == client.number:
                     continue
@@ -249,9 +287,11 @@ class Server:
         if snapshot.scene_number != client.scene_number:
             client.scene_number = snapshot.scene_number
             await send(snapshot.scene)
-        if snapshot.failure != client.failure:
-            client.failure = snapshot.failure
-            await send(json.dumps({"failure": snapshot.failure}))
+        for key, (number, text) in snapshot.notes.items():
+            if client.notes.get(key) != number:
+                client.notes[key] = number
+                await send(text)
         client.number = snapshot.number
         client.credits -= 1
-        await send(snapshot.frame)
+        for frame in snapshot.frames:
+            await send(frame)

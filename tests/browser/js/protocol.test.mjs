@@ -6,6 +6,7 @@ import { pathToFileURL } from "node:url";
 
 const folder = `${pathToFileURL(process.env.CAROM_STATIC).href}/`;
 const { decode, say } = await import(`${folder}protocol.js`);
+const { OPERATIONS } = await import(`${folder}wire.js`);
 const exchange = process.env.CAROM_EXCHANGE;
 const read = (name) => {
   const bytes = readFileSync(`${exchange}/${name}`);
@@ -37,7 +38,7 @@ test("what is cut short, foreign or of another version is refused", () => {
   assert.throws(() => decode(frame.slice(0, -1)), /a frame of 2 spheres/);
   assert.throws(() => decode(read("scene.bin").slice(0, -4)), /a scene of 2 spheres/);
   assert.throws(() => decode(new ArrayBuffer(8)), /no message/);
-  assert.throws(() => decode(new ArrayBuffer(200)), /no message/);
+  assert.throws(() => decode(new ArrayBuffer(400)), /no message/);
   const other = frame.slice(0);
   new DataView(other).setUint16(4, 99, true);
   assert.throws(() => decode(other), /version 99/);
@@ -52,8 +53,13 @@ test("speeds beyond the limits are brought inside", () => {
 });
 
 test("everything it says is left for the server's own code to read", () => {
+  const ball = { position: [1, 2, 3], velocity: [0, 0, 1], radius: 0.5, mass: 2, color: 0xff0000 };
   const said = [
     say.hello("token"), say.credit(2), say.play(), say.pause(), say.restart(), say.speed(0.5),
+    say.step(), say.back(), say.reverse(), say.rule(0.9), say.walls(1), say.gravity([0, -1, 2]),
+    say.scene("gas", { n: 50, speed: 1.5 }), say.add(ball), say.remove(3), say.push(7, [1, 2, 3]),
+    say.compare(true), say.source(),
   ];
+  assert.deepEqual(said.map((text) => JSON.parse(text).op).sort(), Object.keys(OPERATIONS).sort());
   writeFileSync(`${exchange}/said.json`, JSON.stringify(said));
 });

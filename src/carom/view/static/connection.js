@@ -1,8 +1,10 @@
 /** The line to the server: says who we are, hands over what comes, and calls again when cut. */
-import { MAX_CREDITS, WRONG_TOKEN, decode, say } from "./protocol.js";
+import { decode, say } from "./protocol.js";
+import { MAX_CREDITS, SOCKET_PATH, WRONG_TOKEN } from "./wire.js";
 
 const IN_FLIGHT = 2; // frames the server may send ahead: one on its way, one being drawn
 const PATIENCE = [250, 500, 1000, 2000]; // milliseconds between calls
+const SILENCE = 15_000; // milliseconds without a word while time runs, after which a line is dead
 const KEY = "carom-token";
 
 /**
@@ -22,8 +24,9 @@ export function takeToken() {
  * @typedef {object} Listener
  * @property {(scene: import("./protocol.js").Scene) => void} scene
  * @property {(frame: import("./protocol.js").Keyframe) => void} frame
- * @property {(sentence: string) => void} failure "" when all is well again
+ * @property {<K extends keyof Notes>(key: K, value: Notes[K]) => void} note
  * @property {(state: "open" | "waiting" | "refused", sentence: string) => void} state
+ * @typedef {import("./protocol.js").Notes} Notes
  */
 
 export class Connection {
@@ -31,14 +34,22 @@ export class Connection {
   constructor(token, listener) {
     this.token = token;
     this.listener = listener;
-    this.calls = 0;
+    this.calls = 0; // in a row that failed
+    this.heard = 0; // when something came last
+    this.moving = false; // frames should be coming
     this.taken = 0; // frames that came since credit was last returned
+    /** @type {number | undefined} */ this.timer = undefined;
     /** @type {WebSocket | null} */ this.socket = null;
+    // A computer that wakes up need not wait for the next try.
+    for (const sign of ["online", "pageshow", "visibilitychange"]) {
+      addEventListener(sign, () => this.#hurry());
+    }
     this.call();
   }
 
   call() {
-    const socket = new WebSocket(`ws://${location.host}/live`);
+    this.timer = undefined;
+    const socket = new WebSocket(`ws://${location.host}${SOCKET_PATH}`);
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
       socket.send(say.hello(this.token));
@@ -48,6 +59,7 @@ export class Connection {
     socket.onmessage = ({ data }) => this.#hear(data);
     socket.onclose = ({ code, reason }) => this.#lost(code, reason);
     this.socket = socket;
+    this.heard = performance.now();
   }
 
   /** @param {string} message one of `say` */
@@ -57,29 +69,40 @@ export class Connection {
 
   /** To be called once per drawn picture: lets the server send as many frames as have come. */
   returnCredit() {
-    if (this.taken === 0) return;
-    this.send(say.credit(Math.min(this.taken, MAX_CREDITS)));
-    this.taken = 0;
+    if (this.taken > 0) {
+      this.send(say.credit(Math.min(this.taken, MAX_CREDITS)));
+      this.taken = 0;
+    }
+    // After a sleep a line may be dead without a word.
+    if (this.moving && performance.now() - this.heard > SILENCE) this.#hangUp();
   }
 
   /** @param {ArrayBuffer | string} data */
   #hear(data) {
+    const now = performance.now();
+    // A page that was hidden has asked for nothing meanwhile.
+    this.heard = now;
     if (this.calls !== -1) this.listener.state("open", "");
     this.calls = -1;
     if (typeof data === "string") {
-      this.listener.failure(JSON.parse(data).failure);
+      for (const [key, value] of Object.entries(JSON.parse(data))) {
+        this.listener.note(/** @type {keyof Notes} */ (key), value);
+      }
       return;
     }
     const message = decode(data);
     if (message.kind === "scene") this.listener.scene(message.scene);
     else {
-      this.taken++;
+      // The ticks beside come with the frame before them, for the same credit.
+      if (!message.frame.twin) this.taken++;
+      this.moving = message.frame.playing;
       this.listener.frame(message.frame);
     }
   }
 
   /** @param {number} code @param {string} reason */
   #lost(code, reason) {
+    this.moving = false;
     if (code === WRONG_TOKEN) {
       this.listener.state(
         "refused",
@@ -92,6 +115,21 @@ export class Connection {
       reason ? `Not connected: ${reason}.` : "The simulation has ended. Waiting for it to return …",
     );
     this.calls = Math.max(0, this.calls) + 1;
-    setTimeout(() => this.call(), PATIENCE[Math.min(this.calls, PATIENCE.length) - 1]);
+    const wait = PATIENCE[Math.min(this.calls, PATIENCE.length) - 1];
+    this.timer = setTimeout(() => this.call(), wait);
+  }
+
+  #hurry() {
+    this.heard = performance.now();
+    if (this.timer === undefined || document.hidden) return;
+    clearTimeout(this.timer);
+    this.call();
+  }
+
+  #hangUp() {
+    const socket = /** @type {WebSocket} */ (this.socket);
+    socket.onclose = socket.onmessage = null; // closing a dead line can take a minute
+    socket.close();
+    this.#lost(0, "");
   }
 }

@@ -1,7 +1,7 @@
 /** Buttons, sliders and keys of the page. */
 import { cameraKey } from "./gestures.js";
 import { multiple } from "./numbers.js";
-import { FASTEST, SLOWEST } from "./protocol.js";
+import { FASTEST, SLOWEST } from "./wire.js";
 
 const STEPS = 50; // of the speed slider, per power of ten
 const NOTCH = 3; // steps around 1× in which the slider catches

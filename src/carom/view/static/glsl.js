@@ -14,14 +14,14 @@ vec3 wrap(vec3 x) { return x - uPeriod * floor(x * uPerPeriod + 0.5); }
 
 vec3 motion(out float v2) {
   if (!(uH > 0.0)) { v2 = dot(aV1, aV1); return aX1; }
-  uint hits = (aC1 - aC0) & 127u;
+  uint hits = (aC1 - aC0) & 0x7fffffffu;
   float share = uS / uH;
-  if (hits > 1u || ((aC0 ^ aC1) & 128u) != 0u) {
+  if (hits > 1u || ((aC0 ^ aC1) & 0x80000000u) != 0u) {
     vec3 x1 = nearestImage(aX1, aX0 + 0.5 * uH * (aV0 + aV1));
     v2 = mix(dot(aV0, aV0), dot(aV1, aV1), share);
     return wrap(mix(aX0, x1, share));
   }
-  vec3 g = (aC0 & 128u) != 0u ? vec3(0) : uG;
+  vec3 g = (aC0 & 0x80000000u) != 0u ? vec3(0) : uG;
   float left = uH - uS;
   vec3 forward = aX0 + aV0 * uS + (0.5 * uS * uS) * g;
   vec3 back = (0.5 * left * left) * g - aV1 * left;    // from x1

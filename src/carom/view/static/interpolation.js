@@ -14,7 +14,7 @@
  * @property {number} count its count byte
  */
 import { add, dot, scale, sub } from "./matrix.js";
-import { STILL } from "./protocol.js";
+import { STILL } from "./wire.js";
 
 /**
  * Shift x by whole boxes to the image nearest to a place.
@@ -49,7 +49,7 @@ const mix = (a, b, s) => add(scale(a, 1 - s), scale(b, s));
  */
 export function motion(a, b, s, h, gravity, period) {
   if (!(h > 0)) return { x: b.x, v2: dot(b.v, b.v) };
-  const hits = (b.count - a.count) & 127;
+  const hits = (b.count - a.count) & 0x7fffffff;
   if (hits > 1 || (a.count & STILL) !== (b.count & STILL)) return blend(a, b, s, h, period);
   const g = a.count & STILL ? /** @type {Vec3} */ ([0, 0, 0]) : gravity;
   const forward = add(a.x, add(scale(a.v, s), scale(g, 0.5 * s * s)));

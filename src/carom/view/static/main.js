@@ -34,7 +34,9 @@ class Page {
     this.connection = new Connection(takeToken(), {
       scene: (scene) => this.#setScene(scene),
       frame: (frame) => this.#take(frame),
-      failure: (sentence) => this.#say("failure", sentence),
+      note: (key, value) => {
+        if (key === "failure") this.#say("failure", /** @type {string} */ (value));
+      },
       state: (state, sentence) => this.#state(state, sentence),
     });
     attachPointers(this.canvas, this.camera);

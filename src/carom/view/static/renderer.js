@@ -7,7 +7,7 @@
  * @typedef {import("./protocol.js").Scene} Scene
  * @typedef {import("./protocol.js").Keyframe} Keyframe
  * @typedef {import("./camera.js").Camera} Camera
- * @typedef {"own" | "energy" | "speed" | "species"} ColorMode
+ * @typedef {import("./protocol.js").ColorMode} ColorMode
  * @typedef {object} Options
  * @property {ColorMode} color
  * @property {boolean} wire
@@ -19,7 +19,7 @@ import { Program } from "./program.js";
 import { SHADERS } from "./shaders.js";
 import { buildWalls } from "./walls.js";
 
-const MODES = { own: 0, energy: 1, speed: 2, species: 3 };
+const MODES = { own: 0, energy: 1, speed: 2, species: 3, collisions: 0 };
 const POINTS_FROM = 2000; // spheres; fewer are drawn as quads, which have no largest size
 const LARGEST_POINT = 48; // pixels; a quad around a larger sphere wastes fewer
 
@@ -217,7 +217,7 @@ export class Renderer {
       gl.bindBuffer(gl.ARRAY_BUFFER, this.uploaded.get(keyframe) ?? null);
       attribute(`aX${suffix}`, 3, gl.FLOAT, 12, 0);
       attribute(`aV${suffix}`, 3, gl.FLOAT, 12, 12 * n);
-      attribute(`aC${suffix}`, 1, gl.UNSIGNED_BYTE, 1, 24 * n);
+      attribute(`aC${suffix}`, 1, gl.UNSIGNED_INT, 4, 24 * n);
     }
     gl.bindBuffer(gl.ARRAY_BUFFER, this.traits);
     attribute("aRadius", 1, gl.FLOAT, 12, 0);
@@ -309,6 +309,10 @@ export class Renderer {
 
 /** No walls yet. @type {import("./protocol.js").About} */
 const EMPTY = {
+  key: -1,
+  origin: null,
+  method: "exact",
+  free_axes: 3,
   title: "",
   pace: 1,
   wire: false,
@@ -322,4 +326,5 @@ const EMPTY = {
   high: [1, 1, 1],
   full_energy: 1,
   full_speed: 1,
+  full_gravity: 1,
 };

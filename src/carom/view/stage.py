@@ -1,0 +1,303 @@
+"""The simulation on show, the ticks that may run beside it, and what pages can do to both."""
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from carom import mechanics, scenes
+from carom.errors import InputError, RunError
+from carom.view.history import History, Mark
+from carom.view.pressure import WallPressure
+from carom.view.protocol import Command
+from carom.view.viewable import Viewable
+
+MOST_SPHERES = 200_000  #: that a page may ask for; more are for the command line
+MOST_COMPARED = 500  #: the tick method looks at all pairs, in Python
+SEARCH = 3.0  #: seconds of the clock in which a step must find the next collision
+
+Look = Callable[[object], None]
+Stopping = Callable[[], bool]
+
+
+class Stage:
+    """What is on show. Every action either works or raises a `CaromError` and changes nothing.
+
+    Parameters
+    ----------
+    sim : Viewable
+    stopping : callable
+        Whether the view is closing, so that a long search must end.
+
+    Attributes
+    ----------
+    sim : Viewable
+        What was handed in.
+    twin : Viewable or None
+        The same start in ticks.
+    epoch : int
+        Counts jumps of the motion, after which pictures must not be joined.
+    key : int
+        Counts the scenes that were loaded.
+    reversed : bool
+        Whether time was turned round.
+    event : dict or None
+        The collision that the last step has led to.
+    """
+
+    def __init__(self, sim: Viewable, stopping: Stopping) -> None:
+        self.sim = sim
+        self.twin: Viewable | None = None
+        self.epoch = self.key = 0
+        self.reversed = False
+        self.event: dict[str, Any] | None = None
+        self._stopping = stopping
+        self._serial = 0
+        self._at_collision = False
+        self._history = History()
+        self.pressure = WallPressure(sim.world, sim.state)
+        self._actions: dict[str, Callable[..., None]] = {
+            "restart": self.restart,
+            "step": self._step,
+            "back": self._back,
+            "reverse": self._reverse,
+            "rule": self._rule,
+            "walls": self._walls,
+            "gravity": self._gravity,
+            "scene": self._load,
+            "add": self._add,
+            "remove": self._remove,
+            "push": self._push,
+            "compare": self._compare,
+        }
+
+    @property
+    def shown(self) -> tuple[Viewable, ...]:
+        """The simulation, and the ticks if they run beside it."""
+        return (self.sim,) if self.twin is None else (self.sim, self.twin)
+
+    def act(self, command: Command) -> None:
+        """Do what a page asks for.
+
+        Raises
+        ------
+        CaromError
+            If it cannot be done; then nothing has changed.
+        """
+        self._actions[command.op](**command.values)
+
+    def settings(self) -> dict[str, Any]:
+        """What the sliders of a page show."""
+        walls = [wall.restitution for wall in self.sim.walls if hasattr(wall, "restitution")]
+        return {
+            "restitution": self.sim.rule.restitution,
+            "wall_restitution": walls[0] if walls else None,
+            "contact_time": self.sim.rule.contact_time,
+            "gravity": self.sim.world.gravity.tolist(),
+            "comparing": self.twin is not None,
+            "tick": None if self.twin is None else self.twin.tick,
+        }
+
+    # Time goes on.
+
+    def run(self, duration: float, look: Look) -> None:
+        """Let time run; the ticks follow to the same moment."""
+        self._history.note(self._mark)
+        self._at_collision = self._at_collision and duration == 0
+        self._advance(look, duration=duration)
+
+    def _advance(self, look: Look, **goal: float) -> None:
+        before = self.sim.time
+        try:
+            self.sim.run(**goal, progress=look)  # type: ignore[arg-type]
+        finally:
+            self.pressure.add(self.sim.events, self.sim.time - before)
+            if self.twin is not None and self.twin.time < self.sim.time:
+                self.twin.run(until=self.sim.time)
+
+    @property
+    def _count(self) -> int:
+        """Collisions between spheres, or with walls where spheres pass through one another."""
+        return self.sim.collisions if self._collide else self.sim.wall_collisions
+
+    @property
+    def _collide(self) -> bool:
+        return self.sim.world.collide and len(self.sim) > 1
+
+    @property
+    def _goal(self) -> str:
+        return "collisions" if self._collide else "events"
+
+    def _mark(self) -> Mark:
+        return Mark(self._count, self.reversed, tuple(sim.bookmark() for sim in self.shown))
+
+    def _unless_stopping(self, _: object) -> None:
+        if self._stopping():
+            msg = "the view is closing"
+            raise RunError(msg)
+
+    # What pages can do.
+
+    def restart(self) -> None:
+        """Go back to the start; what was set since (rule, walls, gravity) stays."""
+        for sim in self.shown:
+            rule, walls, gravity = sim.rule, sim.walls, tuple(sim.gravity)
+            sim.reset()
+            if sim.rule != rule:
+                sim.rule = rule
+            if sim.walls != walls:
+                sim.walls = walls
+            if tuple(sim.gravity) != gravity:
+                sim.gravity = gravity
+        self.reversed = False
+        self._jump(forget=True)
+
+    def _step(self) -> None:
+        """Run through the next collision."""
+        self._history.keep(self._mark())
+        end = time.perf_counter() + SEARCH
+
+        def search(_: object) -> None:
+            if self._stopping() or time.perf_counter() > end:
+                msg = (
+                    f"no collision came within {SEARCH:g} seconds of looking; "
+                    "let time run on, or restart"
+                )
+                raise RunError(msg)
+
+        self._advance(search, **{self._goal: 1})
+        event = self.sim.events[-1]
+        self._serial += 1
+        self.event = {
+            "t": float(event["time"]),
+            "i": int(event["i"]),
+            "j": int(event["j"]),
+            "impulse": event["impulse"].tolist(),
+            "serial": self._serial,
+        }
+        self._at_collision = True
+
+    def _back(self) -> None:
+        """Return to the moment right after the collision before this one, or to the start."""
+        target = self._count - self._at_collision
+        mark = self._history.before(target)
+        if mark is None:
+            msg = "there is nothing to step back to yet; let time run first"
+            raise RunError(msg)
+        for sim, bookmark in zip(self.shown, mark.marks, strict=True):
+            sim.return_to(bookmark)
+        self.reversed = mark.reversed
+        self._at_collision = self._count < target
+        if self._at_collision:
+            self._advance(self._unless_stopping, **{self._goal: target - self._count})
+        self._jump()
+
+    def _reverse(self) -> None:
+        for sim in self.shown:
+            sim.velocity = -sim.velocity
+        self.reversed = not self.reversed
+        self._jump()
+
+    def _rule(self, restitution: float) -> None:
+        """Change the restitution, with the cure of inelastic collapse where there is none."""
+        scene = self.sim.scene
+        contact = scene.rule.contact_time if scene is not None else None
+        if contact is None and restitution < 1:
+            short = 1e-3 * mechanics.crossing_time(self.sim.state, self.sim.world)
+            contact = float(f"{short:.0e}") if 0 < short < math.inf else None
+        for sim in self.shown:
+            sim.rule = replace(sim.rule, restitution=restitution, contact_time=contact)
+
+    def _walls(self, restitution: float) -> None:
+        for sim in self.shown:
+            sim.walls = [
+                replace(wall, restitution=restitution) if hasattr(wall, "restitution") else wall
+                for wall in sim.walls
+            ]
+
+    def _gravity(self, value: tuple[float, float, float]) -> None:
+        for sim in self.shown:
+            sim.gravity = value
+        self.pressure = WallPressure(self.sim.world, self.sim.state)
+
+    def _load(self, name: str, options: dict[str, Any]) -> None:
+        """Show another scene of the library."""
+        n = options.get("n", 0)
+        if isinstance(n, int | float) and n > MOST_SPHERES:
+            msg = (
+                f"n is {n:g}; a page may ask for up to {MOST_SPHERES:,} spheres, for more start "
+                f"'carom show {name} --n {n:g}'"
+            )
+            raise InputError(msg)
+        try:
+            scene = scenes.build(name, options)
+        except MemoryError as error:
+            msg = "there is not enough memory for this many spheres; take fewer"
+            raise InputError(msg) from error
+        same = scene.origin is not None and self._origin == scene.origin.name
+        self.sim.reset(scene)
+        self.twin = None
+        self.reversed = False
+        self.key += not same
+        self._jump(forget=True)
+
+    @property
+    def _origin(self) -> str:
+        scene = self.sim.scene
+        return scene.origin.name if scene is not None and scene.origin is not None else ""
+
+    def _add(self, ball: dict[str, Any]) -> None:
+        self._refuse_beside_ticks()
+        self.sim.add(**ball)
+        self._jump()
+
+    def _remove(self, index: int) -> None:
+        self._refuse_beside_ticks()
+        self._refuse_unknown(index)
+        if len(self.sim) == 1:
+            msg = "this is the last sphere and the scene needs one; add another first"
+            raise InputError(msg)
+        self.sim.remove(index)
+        self._jump()
+
+    def _push(self, index: int, velocity: tuple[float, float, float]) -> None:
+        self._refuse_unknown(index)
+        for sim in self.shown:
+            sim[index].velocity = velocity
+        self._jump()
+
+    def _refuse_beside_ticks(self) -> None:
+        if self.twin is not None:
+            msg = "two runs of one start are being compared; leave the comparison first"
+            raise InputError(msg)
+
+    def _refuse_unknown(self, index: int) -> None:
+        if index >= len(self.sim):
+            msg = f"there is no sphere {index}; there are {len(self.sim)}, counted from 0"
+            raise InputError(msg)
+
+    def _compare(self, on: bool) -> None:
+        """Begin again with the ticks beside, or leave them."""
+        if on and len(self.sim) > MOST_COMPARED:
+            msg = (
+                f"the scene has {len(self.sim)} spheres; the tick method looks at all pairs and "
+                f"can be watched with up to {MOST_COMPARED}: take fewer"
+            )
+            raise InputError(msg)
+        if on == (self.twin is not None):
+            return
+        self.twin = None
+        if on:
+            self.restart()
+            self.twin = self.sim.in_ticks()
+        self._jump(forget=True)
+
+    def _jump(self, *, forget: bool = False) -> None:
+        """Take note that the motion does not go on from where it was."""
+        self.epoch += 1
+        self.event = None
+        self._at_collision = self._at_collision and not forget
+        if forget:
+            self._history.clear()
+        self.pressure = WallPressure(self.sim.world, self.sim.state)
