@@ -31,6 +31,7 @@ TABLE = {
             "readout",
             "renderer",
             "shaders",
+            "stack",
             "timeline",
             "walls",
             "wire",
