@@ -35,9 +35,7 @@ def energy(program):
 
 
 def momentum(program):
-    return sum(
-        getattr(ball, "mass", 1) * np.array(tuple(ball.velocity)) for ball in balls(program)
-    )
+    return sum(getattr(ball, "mass", 1) * np.array(tuple(ball.velocity)) for ball in balls(program))
 
 
 def test_all_are_here_and_short():
@@ -150,6 +148,4 @@ def test_phase_4_shows_energy_by_saturation():
         most, least = max(red, green, blue), min(red, green, blue)
         speed2 = ball.velocity.dot(ball.velocity)
         # Frame 1 has no collision yet that would have changed a velocity after it was shown.
-        assert (1 - least / most) * 100 == pytest.approx(
-            min(100, ball.mass * speed2 / 10), abs=1
-        )
+        assert (1 - least / most) * 100 == pytest.approx(min(100, ball.mass * speed2 / 10), abs=1)

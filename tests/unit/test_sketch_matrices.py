@@ -43,7 +43,8 @@ def test_steps_are_products_of_matrices(program, x, y, z):
         expected = expected @ written_out(name, *values)
     scale = np.abs(expected).max() * 40
     assert stack.apply(x, y, z) == pytest.approx(expected[:3] @ (x, y, z, 1), abs=1e-12 * scale)
-    assert np.reshape(stack.top, (4, 3)).T == pytest.approx(expected[:3], abs=1e-12 * scale)
+    found = np.array(stack.top).reshape(4, 3).T
+    assert found == pytest.approx(expected[:3], abs=1e-12 * scale)
 
 
 def test_the_last_step_acts_first():

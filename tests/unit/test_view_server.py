@@ -21,7 +21,7 @@ import carom
 from carom import scenes
 from carom.errors import FileError, InputError
 from carom.view import LiveView, network, serve
-from carom.view.files import TABLE, load
+from carom.view.files import SKETCH_TABLE, TABLE, load
 from carom.view.protocol import Command
 from carom.view.server import MAX_CLIENTS
 from carom.view.wire import VERSION
@@ -112,7 +112,7 @@ def test_every_file_of_the_table_is_served(view):
 def test_the_table_names_every_module_of_the_page():
     folder = resources.files("carom.view") / "static"
     there = {entry.name for entry in folder.iterdir()} - {"package.json"}  # for tools only
-    assert there == {name for name, _ in TABLE.values()}
+    assert there == {name for table in (TABLE, SKETCH_TABLE) for name, _ in table.values()}
 
 
 def test_scene_comes_first_then_frames_as_credit_allows(view):

@@ -1,6 +1,6 @@
 """The page's files: a fixed table read once, so no request ever names a path on the disk."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -39,6 +39,31 @@ TABLE = {
     },
 }
 
+#: The page of a sketch: its own address table, because it is served alone.
+SKETCH_TABLE = {
+    "/": ("sketch.html", HTML),
+    "/sketch.css": ("sketch.css", CSS),
+    "/icon.svg": ("icon.svg", SVG),
+    **{
+        f"/{name}.js": (f"{name}.js", JS)
+        for name in (
+            "sketch",
+            "sketch_camera",
+            "sketch_order",
+            "sketch_protocol",
+            "sketch_renderer",
+            "sketch_shaders",
+            "connection",
+            "glsl",
+            "matrix",
+            "program",
+            "protocol",
+            "stack",
+            "wire",
+        )
+    },
+}
+
 
 @dataclass(frozen=True, slots=True)
 class StaticFile:
@@ -50,11 +75,21 @@ class StaticFile:
 
 @cache
 def load() -> dict[str, StaticFile]:
-    """All files by address."""
+    """All files of the live view by address."""
+    return _read(TABLE)
+
+
+@cache
+def load_sketch() -> dict[str, StaticFile]:
+    """All files of a sketch's page by address."""
+    return _read(SKETCH_TABLE)
+
+
+def _read(table: Mapping[str, tuple[str, str]]) -> dict[str, StaticFile]:
     folder = files("carom.view") / "static"
     return {
         address: StaticFile((folder / name).read_bytes(), f"{kind}; charset=utf-8")
-        for address, (name, kind) in TABLE.items()
+        for address, (name, kind) in table.items()
     }
 
 

@@ -29,7 +29,7 @@ class SketchPage {
         note: (key, value) => this.#note(key, value),
         state: (state, sentence) => {
           document.body.dataset.connection = state;
-          this.#banner("connection", sentence);
+          this.#banner("connection", sentence.replace("The simulation", "The program"));
         },
       },
       decodeSketch,

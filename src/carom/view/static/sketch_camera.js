@@ -19,15 +19,17 @@ const KEY_ZOOM = 1.12;
 export class SketchCamera {
   constructor() {
     this.version = 0; // counts changes
-    this.reset();
-  }
-
-  /** Stand where Processing stands. */
-  reset() {
     this.azimuth = 0; // radians to the right
     this.height = 0; // radians upwards
     this.zoom = 1; // how many times closer
     /** Around what the view turns. @type {[number, number, number] | null} */
+    this.center = null;
+  }
+
+  /** Stand where Processing stands. */
+  reset() {
+    this.azimuth = this.height = 0;
+    this.zoom = 1;
     this.center = null;
     this.version++;
   }

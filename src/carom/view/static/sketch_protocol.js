@@ -6,7 +6,6 @@
  * @property {number} epoch counts restarts
  * @property {boolean} playing
  * @property {boolean} failed
- * @property {boolean} twin never: what the connection asks of every frame
  * @property {number} width of the sheet, in its own pixels
  * @property {number} height
  * @property {[number, number, number]} background parts from 0 to 1
@@ -38,7 +37,11 @@ export const KIND = 15;
 const SHEET_BYTES = 24;
 const SHAPES = SCENE_HEADER_BYTES + SHEET_BYTES;
 
-/** @param {ArrayBuffer} buffer @returns {{kind: "frame", frame: Sheet}} */
+/**
+ * @param {ArrayBuffer} buffer
+ * @returns {{kind: "frame", frame: Sheet, moving: boolean}} moving: whether a long silence is a sign
+ *   that the line is dead; a sketch may be slow, or draw only once
+ */
 export function decodeSketch(buffer) {
   const view = new DataView(buffer);
   if (buffer.byteLength < SCENE_HEADER_BYTES || view.getUint32(AT.magic, true) !== MAGIC) {
@@ -63,7 +66,6 @@ export function decodeSketch(buffer) {
     epoch: view.getUint32(AT.epoch, true),
     playing: (flags & PLAYING) !== 0,
     failed: (flags & FAILED) !== 0,
-    twin: false,
     width: whole(0),
     height: whole(1),
     background: /** @type {[number, number, number]} */ ([
@@ -77,5 +79,5 @@ export function decodeSketch(buffer) {
     numbers: new Float32Array(buffer, SHAPES, SHAPE_WORDS * n),
     words: new Uint32Array(buffer, SHAPES, SHAPE_WORDS * n),
   };
-  return { kind: "frame", frame };
+  return { kind: "frame", frame, moving: false };
 }
