@@ -43,8 +43,9 @@ def setup():
 
 def draw():
     background(220, 35, 12)
-    translate(width() / 2, height() / 2, -WIDTH / 2)
-    rotate_y(0.4)
+    translate(width() / 2, height() / 2, -280)
+    rotate_x(-0.2)
+    rotate_y(0.5)
     stroke(145, 80, 75)
     box(WIDTH)
     for ball in balls:

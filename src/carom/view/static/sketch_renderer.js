@@ -57,7 +57,6 @@ export class SketchRenderer {
     );
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
-    gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     const common = {
       uView: camera.view,
@@ -68,12 +67,21 @@ export class SketchRenderer {
     for (const { kind, solid, first, count } of runs) {
       const program = this.programs[kind];
       program.use();
-      program.set(common);
+      program.set({ ...common, uSolid: { int: Number(solid) } });
       gl.depthMask(solid);
+      // Edges of what hides things: by samples, so that the order does not count.
+      this.#enable(gl.SAMPLE_ALPHA_TO_COVERAGE, solid);
+      this.#enable(gl.BLEND, !solid);
       this.#pointAt(first);
       gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, VERTICES[kind], count);
     }
     gl.depthMask(true);
+  }
+
+  /** @param {number} what @param {boolean} on */
+  #enable(what, on) {
+    if (on) this.gl.enable(what);
+    else this.gl.disable(what);
   }
 
   /** Let the attributes begin at an item. @param {number} first */

@@ -1,9 +1,11 @@
 /** Shaders of a sketch's shapes, each as a pair of vertex and fragment program. */
-import { RAY, WIRE } from "./glsl.js";
+import { RAY } from "./glsl.js";
 
 const HEAD = `#version 300 es
 precision highp float;
 precision highp int;
+// Pixels: thinner lines are drawn as wide as this, and fainter.
+const float THINNEST = 1.1, FAINTEST = 0.55;
 `;
 
 /** What every item brings, see `sketch_order.js`. */
@@ -26,6 +28,34 @@ vec3 cube(int i) {
 }
 `;
 
+/**
+ * Lines of latitude and longitude that stay crisp at any width: the distance to the next line, in
+ * pixels, comes from the angle itself. Its slope is taken from sine and cosine together, which
+ * do not jump where the angle does.
+ */
+const GRID = `
+// How much of a pixel lines cover that lie where k · angle is a multiple of π.
+float lines(float angle, float k, float width) {
+  float s = sin(k * angle), c = cos(k * angle);
+  float slope = length(vec2(c * dFdx(s) - s * dFdx(c), c * dFdy(s) - s * dFdy(c)));
+  float away = abs(asin(clamp(s, -1.0, 1.0))) / max(slope, 1e-6);
+  // Where lines are too close to be told apart the average takes over.
+  float average = min(1.0, slope * width / 3.14159265);
+  return mix(clamp(0.5 * width + 0.5 - away, 0.0, 1.0), average, smoothstep(0.6, 1.4, slope));
+}
+
+// n: unit normal of the sphere, poles along y. Two of three meridians end before the poles,
+// where they would run together.
+float grid(vec3 n, float meridians, float width) {
+  float k = 0.5 * meridians;
+  float round = length(n.xz), angle = atan(n.z, n.x);
+  float many = lines(angle, k, width) * smoothstep(0.34, 0.42, round);
+  float few = lines(angle, k / 3.0, width) * smoothstep(0.0, 0.12, round);
+  float parallels = lines(atan(n.y, max(round, 1e-6)), k, width);
+  return max(max(many, few), parallels);
+}
+`;
+
 /** One soft lamp above the left shoulder and a little light from everywhere. */
 const LIGHT = `
 vec3 lit(vec3 base, vec3 n, vec3 toEye) {
@@ -34,7 +64,7 @@ vec3 lit(vec3 base, vec3 n, vec3 toEye) {
   float shine = pow(max(dot(n, normalize(lamp + toEye)), 0.0), 48.0);
   float rim = pow(1.0 - clamp(dot(n, toEye), 0.0, 1.0), 3.0);
   // Squares and roots stand for the curve between colours and amounts of light.
-  vec3 light = base * base * (0.24 + 0.10 * n.y + 0.80 * facing * facing);
+  vec3 light = base * base * (0.38 + 0.08 * n.y + 0.72 * facing * facing);
   return sqrt(light + vec3(0.10 * shine + 0.03 * rim * (0.3 + base)));
 }
 `;
@@ -74,7 +104,7 @@ void main() {
 
 const SPHERE = `
 ${RAY}
-${WIRE}
+${GRID}
 ${LIGHT}
 flat in mat3 vInverse;
 flat in vec3 vEye;
@@ -82,6 +112,7 @@ flat in float vTurned;
 flat in vec4 vFill, vStroke;
 flat in float vLine;
 flat in uvec2 vSide;
+uniform bool uSolid;
 out vec4 color;
 
 void main() {
@@ -101,21 +132,26 @@ void main() {
   vec3 n = (vEye + t * along) / size;
   float slope = length(vec2(dFdx(off1), dFdy(off1)));
   float inside = (1.0 - off1) / max(slope, 1e-7);
-  float thin = min(vLine, 1.0);
-  float width = max(vLine, 1.0);
-  float grid = 0.0;
-  if (vStroke.a > 0.0) grid = thin * wire(n.xzy, 360.0 / float(vSide.y), width);
+  float thin = clamp(vLine / THINNEST, FAINTEST, 1.0);
+  float width = max(vLine, THINNEST);
+  float mesh = 0.0;
+  if (vStroke.a > 0.0) mesh = thin * grid(n, float(vSide.y), width);
   float coverage = clamp(inside + 0.5, 0.0, 1.0);
   if (coverage <= 0.0 || t <= 0.0) discard;
   vec3 normal = normalize(n * vInverse);
   float strength = far ? 0.42 : 0.95;
+  // A see-through sphere has a breath of its stroke at the rim, so that it looks round.
+  float rim = 1.0 - sqrt(max(1.0 - off1 * off1, 0.0));
+  float breath = far || vFill.a > 0.0 ? 0.0 : 0.03 + 0.14 * rim * rim;
   float outline = far ? 0.0 : thin * clamp(0.5 * width + 1.0 - abs(inside - 0.5 * width), 0.0, 1.0);
-  float line = vStroke.a * max(strength * grid, 0.7 * outline * float(vFill.a < 1.0));
+  float line = vStroke.a * max(max(breath, strength * mesh), 0.7 * outline * float(vFill.a < 1.0));
   vec3 surface = lit(vFill.rgb, normal, -normalize(ray));
   float fill = far ? 0.0 : vFill.a;
   float alpha = coverage * (line + fill * (1.0 - line));
-  color = vec4(coverage * (vStroke.rgb * line + surface * fill * (1.0 - line)), alpha);
   if (alpha <= 0.0) discard;
+  color = vec4(coverage * (vStroke.rgb * line + surface * fill * (1.0 - line)), alpha);
+  // What hides things is not blended: its coverage goes to the samples of the pixel.
+  if (uSolid) color.rgb /= alpha;
   gl_FragDepth = depthOf(-t);
 }
 `;
@@ -183,7 +219,7 @@ void main() {
   vec2 ahead = length(step) > 1e-3 ? normalize(step) : vec2(1, 0);
   bool end = (gl_VertexID & 2) != 0;
   float sign = float(gl_VertexID & 1) * 2.0 - 1.0;
-  float reach = 0.5 * max(vLine, 1.0) + 1.0;
+  float reach = 0.5 * max(vLine, THINNEST) + 1.0;
   vec4 p = end ? pb : pa;
   vec2 aside = reach * (vec2(-ahead.y, ahead.x) * sign + ahead * (end ? 1.0 : -1.0));
   p.xy += aside * 2.0 / uSize * p.w;
@@ -201,8 +237,8 @@ void main() {
   vec2 step = vTo - vFrom, off = gl_FragCoord.xy - vFrom;
   float along = clamp(dot(off, step) / max(dot(step, step), 1e-6), 0.0, 1.0);
   float away = length(off - along * step);
-  float alpha = vStroke.a * min(vLine, 1.0)
-    * clamp(0.5 * max(vLine, 1.0) + 0.5 - away, 0.0, 1.0);
+  float alpha = vStroke.a * clamp(vLine / THINNEST, FAINTEST, 1.0)
+    * clamp(0.5 * max(vLine, THINNEST) + 0.5 - away, 0.0, 1.0);
   if (alpha <= 0.0) discard;
   color = vec4(vStroke.rgb * alpha, alpha);
 }
