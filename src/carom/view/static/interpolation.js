@@ -15,9 +15,10 @@
  * @typedef {import("./protocol.js").Keyframe} Keyframe
  */
 import { add, dot, scale, sub } from "./matrix.js";
+import { STILL } from "./wire.js";
 
-/** Does gravity act? The top bit of a 32-bit number is its sign here. @param {number} count */
-const still = (count) => (count | 0) < 0;
+/** Does no gravity act? @param {number} count */
+const still = (count) => (count & STILL) !== 0;
 
 /**
  * Shift x by whole boxes to the image nearest to a place.
