@@ -10,7 +10,6 @@ import { Readout } from "./readout.js";
 import { Renderer } from "./renderer.js";
 import { Timeline } from "./timeline.js";
 
-const FINEST = 2; // pixels of the picture per pixel of the page
 const NARROW = matchMedia("(max-width: 720px)");
 const LIGHT = matchMedia("(prefers-color-scheme: light)");
 
@@ -26,7 +25,15 @@ class Page {
     this.readout = new Readout();
     /** @type {import("./protocol.js").Scene | null} */ this.scene = null;
     /** @type {import("./renderer.js").Options} */
-    this.options = { color: "energy", wire: false, theme: LIGHT.matches ? "light" : "dark" };
+    this.options = {
+      color: "energy",
+      full: 1,
+      wire: false,
+      theme: LIGHT.matches ? "light" : "dark",
+      arrows: false,
+    };
+    /** @type {[import("./protocol.js").Keyframe, import("./protocol.js").Keyframe] | null} */
+    this.pair = null;
     this.stale = true; // something other than time and camera has changed
     this.drawn = { t: NaN, camera: -1 };
     this.before = performance.now();
@@ -74,6 +81,7 @@ class Page {
     const before = this.scene;
     this.scene = scene;
     this.renderer.setScene(scene);
+    this.pair = null;
     this.timeline.clear();
     const { about } = scene;
     // After a restart the same scene comes again: what people chose stays.
@@ -123,6 +131,8 @@ class Page {
   /** @param {import("./renderer.js").ColorMode} mode */
   #setColor(mode) {
     this.options.color = mode;
+    const about = this.scene?.about;
+    this.options.full = (mode === "speed" ? about?.full_speed : about?.full_energy) ?? 1;
     this.controls.markColor(mode);
     if (this.scene !== null) drawLegend(at("legend"), mode, this.scene);
     this.stale = true;
@@ -138,9 +148,6 @@ class Page {
   #resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
-    const ratio = Math.min(devicePixelRatio, FINEST);
-    this.canvas.width = Math.round(width * ratio);
-    this.canvas.height = Math.round(height * ratio);
     const panel = at("panel");
     const bar = at("bar").getBoundingClientRect();
     const below = NARROW.matches && !panel.hidden ? panel.getBoundingClientRect() : bar;
@@ -174,16 +181,25 @@ class Page {
     this.before = now;
     const pair = this.timeline.advance(seconds);
     this.connection.returnCredit();
-    if (pair === null) {
-      if (this.scene !== null && this.renderer.first === null) return;
-    } else {
-      this.renderer.setKeyframes(...pair);
+    if (pair !== null) {
+      this.pair = pair;
       this.readout.show(this.timeline.t, now);
     }
+    if (this.pair === null) return;
     const { t } = this.timeline;
     const { version } = this.camera;
     if (!this.stale && t === this.drawn.t && version === this.drawn.camera) return;
-    this.renderer.draw(t, this.camera, this.options);
+    const [first, second] = this.pair;
+    const viewport = { x: 0, y: 0, ...this.camera.size };
+    this.renderer.draw({
+      sides: [{ first, second, t, viewport }],
+      camera: this.camera,
+      options: this.options,
+      marks: [],
+      arrows: [],
+      trails: [],
+      ghost: null,
+    });
     this.drawn = { t, camera: version };
     this.stale = false;
   }
