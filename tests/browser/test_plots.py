@@ -115,7 +115,9 @@ def test_few_spheres_are_judged_by_their_own_law(plot):
     shown = plot(carom.Simulation(scene), "Speeds")
     says(shown, "Speeds", r"Collecting: \d+ of 40")
     shown.js("carom.connection.send(JSON.stringify({op: 'speed', value: 20}))")
-    match = says(shown, "Speeds", r"the exact law of 6 spheres: .*p (?:=|<) ([\d.]+).*\n(\d+) speeds", 20)
+    match = says(
+        shown, "Speeds", r"the exact law of 6 spheres: .*p (?:=|<) ([\d.]+).*\n(\d+) speeds", 20
+    )
     assert int(match[2]) >= 40
     assert "Maxwell–Boltzmann" in section(shown, "Speeds").inner_text()
 
@@ -192,6 +194,26 @@ def test_a_restart_begins_the_lines_anew(plot):
     assert (np.diff(times) >= 0).all()
 
 
+def test_turning_time_round_breaks_the_lines_and_keeps_them(plot):
+    sim = carom.Simulation(scenes.bounce(n=25, restitution=1.0))
+    shown = plot(sim, "Energy", "Momentum")
+    shown.wait("carom.plots.past.length > 10")
+    before = shown.js("[carom.plots.past.length, carom.plots.past.start]")
+    shown.js("carom.connection.send(JSON.stringify({op: 'reverse'}))")
+    shown.wait("carom.timeline.newest?.epoch >= 1")
+    shown.wait(f"carom.plots.past.length > {before[0] + 6}")
+    shown.settle()
+    time.sleep(0.4)
+    kinetic, total = np.array(shown.js("[1, 4].map((c) => [...carom.plots.past.column(c)])"))
+    assert np.count_nonzero(np.isnan(kinetic)) == 1
+    assert np.ptp(total[np.isfinite(total)]) < 1e-9 * np.nanmax(kinetic)
+    assert shown.js("carom.plots.past.start") == before[1]
+    says(shown, "Energy", "kinetic.*potential.*total")
+    picture = drawn(shown, "Energy")
+    for name in ("--plot-1", "--plot-2"):
+        assert like(picture, paint(shown, name)).any(axis=0).mean() > 0.4, name
+
+
 def test_pressure_on_each_wall_beside_theory(plot):
     shown = plot(carom.Simulation(slow(scenes.gas(n=50))), "Pressure on walls")
     shown.js(
@@ -251,9 +273,10 @@ def test_colours_follow_the_theme_and_text_can_be_read(plot, scheme):
     shown.wait("carom.plots.parts.speeds.drawn > 0")
     shown.wait(f"carom.plots.container.dataset.theme === '{scheme}'")
     back = np.array([0x10, 0x15, 0x1F]) if scheme == "dark" else np.array([0xEE, 0xF2, 0xF7])
-    for name in ("--plot-text", "--plot-theory", "--plot-1", "--plot-2", "--plot-3", "--plot-4"):
-        needed = 4.5 if name == "--plot-text" else 3  # of text; of lines (WCAG 1.4.3, 1.4.11)
-        assert contrast(paint(shown, name), back) >= needed, name
+    for name in ("text", "good", "fair"):  # WCAG 1.4.3
+        assert contrast(paint(shown, f"--plot-{name}"), back) >= 4.5, name
+    for name in ("theory", "1", "2", "3", "4"):  # lines: WCAG 1.4.11
+        assert contrast(paint(shown, f"--plot-{name}"), back) >= 3, name
 
 
 def contrast(a, b):

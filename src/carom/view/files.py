@@ -1,87 +1,24 @@
-"""The page's files: a fixed table read once, so no request ever names a path on the disk."""
+"""The pages' files: tables read once, so no request ever names a path on the disk."""
 
 import json
 from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
+from importlib import resources
+from importlib.resources.abc import Traversable
 
-HTML, CSS, JS = "text/html", "text/css", "text/javascript"
-SVG, WEBP, JSON = "image/svg+xml", "image/webp", "application/json"
-
-#: Address of each file, its name in `static/`, its type.
-TABLE = {
-    "/": ("index.html", HTML),
-    "/icon.svg": ("icon.svg", SVG),
-    **{
-        f"/{name}.css": (f"{name}.css", CSS)
-        for name in ("bars", "dialogs", "hands", "narrow", "panel", "plots", "style")
-    },
-    **{
-        f"/{name}.js": (f"{name}.js", JS)
-        for name in (
-            "main",
-            "annotations",
-            "camera",
-            "chart",
-            "clipboard",
-            "colors",
-            "connection",
-            "controls",
-            "dialog",
-            "dom",
-            "flash",
-            "fullscreen",
-            "gallery",
-            "gestures",
-            "glsl",
-            "gravity",
-            "gravitypad",
-            "handle",
-            "help",
-            "inspector",
-            "interpolation",
-            "keys",
-            "later",
-            "layout",
-            "legend",
-            "link",
-            "look",
-            "matrix",
-            "newball",
-            "numbers",
-            "parameters",
-            "pick",
-            "plots",
-            "program",
-            "protocol",
-            "readout",
-            "renderer",
-            "scales",
-            "section",
-            "sections",
-            "settings",
-            "shaders",
-            "share",
-            "slider",
-            "speeds",
-            "split",
-            "stack",
-            "standpoint",
-            "statistics",
-            "store",
-            "theme",
-            "timeline",
-            "toast",
-            "toolbar",
-            "tools",
-            "traces",
-            "trail",
-            "walls",
-            "wire",
-        )
-    },
+FOLDER = resources.files("carom.view") / "static"
+TYPES = {
+    "html": "text/html; charset=utf-8",
+    "css": "text/css; charset=utf-8",
+    "js": "text/javascript; charset=utf-8",
+    "svg": "image/svg+xml; charset=utf-8",
+    "webp": "image/webp",
+    "json": "application/json; charset=utf-8",
 }
+VIEW, SKETCH = "index.html", "sketch.html"
+#: Where the page finds which scenes have a picture.
+GALLERY = "/gallery.json"
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,19 +30,22 @@ class StaticFile:
 
 
 @cache
-def load() -> dict[str, StaticFile]:
-    """All files by address, and the scenes' pictures with a list of those there are."""
-    folder = files("carom.view") / "static"
-    table = {
-        address: StaticFile((folder / name).read_bytes(), f"{kind}; charset=utf-8")
-        for address, (name, kind) in TABLE.items()
-    }
-    pictures = sorted((folder / "gallery").iterdir(), key=lambda picture: picture.name)
-    for picture in pictures:
-        table[f"/gallery/{picture.name}"] = StaticFile(picture.read_bytes(), WEBP)
-    names = json.dumps([picture.name.removesuffix(".webp") for picture in pictures])
-    table["/gallery.json"] = StaticFile(names.encode(), JSON)
-    return table
+def load(page: str) -> dict[str, StaticFile]:
+    """All files of a page by address: the page itself at ``/``, scripts, styles and pictures."""
+    files = {"/": _read(FOLDER / page)}
+    for file in FOLDER.iterdir():
+        if file.name.endswith((".js", ".css", ".svg")):
+            files[f"/{file.name}"] = _read(file)
+    if page == VIEW:
+        pictures = sorted((FOLDER / "gallery").iterdir(), key=lambda picture: picture.name)
+        files |= {f"/gallery/{picture.name}": _read(picture) for picture in pictures}
+        names = json.dumps([picture.name.removesuffix(".webp") for picture in pictures])
+        files[GALLERY] = StaticFile(names.encode(), TYPES["json"])
+    return files
+
+
+def _read(file: Traversable) -> StaticFile:
+    return StaticFile(file.read_bytes(), TYPES[file.name.rpartition(".")[2]])
 
 
 def security_headers(hosts: Collection[str]) -> dict[str, str]:

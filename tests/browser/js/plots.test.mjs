@@ -5,7 +5,7 @@ import { pathToFileURL } from "node:url";
 
 const folder = `${pathToFileURL(process.env.CAROM_STATIC).href}/`;
 const { roundStep, span, tickLabel, ticks } = await import(`${folder}chart.js`);
-const { apart, measured } = await import(`${folder}plots.js`);
+const { apart, briefly, measured } = await import(`${folder}plots.js`);
 const { Speeds, freeAxes, verdict } = await import(`${folder}speeds.js`);
 const { Jumps, RateMeter, Trace, boxVolume, enskog } = await import(`${folder}traces.js`);
 
@@ -65,6 +65,7 @@ test("a jump breaks the line; a jump back also forgets what comes later", () => 
   trace.cut();
   trace.push(4, 4);
   assert.deepEqual([...trace.column(1)], [0, 1, 2, 3, NaN, 4]);
+  assert.equal(trace.largest(1), 4); // the break is no number
   trace.forget(1.5);
   assert.deepEqual([...trace.column(0)], [0, 1]);
   trace.forget(-1);
@@ -254,6 +255,14 @@ test("a hundred thousand spheres are looked at in part, and quickly", () => {
     return performance.now() - before;
   });
   assert.ok(Math.min(...times) < 5, `${times}`);
+});
+
+test("names of walls lose what they have in common", () => {
+  assert.deepEqual(briefly(["x- wall of the Box", "x+ wall of the Box"]), ["x−", "x+"]);
+  assert.deepEqual(briefly(["Sphere"]), ["Sphere"]);
+  assert.deepEqual(briefly(["Plane", "Sphere", "Plane"]), ["Plane 1", "Sphere", "Plane 3"]);
+  assert.deepEqual(briefly(["side wall of it", "wall of it"]), ["side wall", "wall"]);
+  assert.deepEqual(briefly([]), []);
 });
 
 test("numbers in words", () => {

@@ -21,19 +21,31 @@ export function takeToken() {
 }
 
 /**
+ * @template [F=import("./protocol.js").Keyframe]
  * @typedef {object} Listener
  * @property {(scene: import("./protocol.js").Scene) => void} scene
- * @property {(frame: import("./protocol.js").Keyframe) => void} frame
+ * @property {(frame: F) => void} frame
  * @property {<K extends keyof Notes>(key: K, value: Notes[K]) => void} note
  * @property {(state: "open" | "waiting" | "refused", sentence: string) => void} state
  * @typedef {import("./protocol.js").Notes} Notes
  */
 
+/**
+ * @template F
+ * @typedef {{kind: "scene", scene: import("./protocol.js").Scene}
+ *   | {kind: "frame", frame: F, moving?: boolean}} Message
+ */
+
+/** @template {{playing: boolean, twin?: boolean}} [F=import("./protocol.js").Keyframe] */
 export class Connection {
-  /** @param {string} token @param {Listener} listener */
-  constructor(token, listener) {
+  /**
+   * @param {string} token @param {Listener<F>} listener
+   * @param {(buffer: ArrayBuffer) => Message<F>} read what binary messages mean
+   */
+  constructor(token, listener, read = /** @type {any} */ (decode)) {
     this.token = token;
     this.listener = listener;
+    this.read = read;
     this.calls = 0; // in a row that failed
     this.heard = 0; // when something came last
     this.moving = false; // frames should be coming
@@ -90,12 +102,12 @@ export class Connection {
       }
       return;
     }
-    const message = decode(data);
+    const message = this.read(data);
     if (message.kind === "scene") this.listener.scene(message.scene);
     else {
       // The ticks beside come with the frame before them, for the same credit.
       if (!message.frame.twin) this.taken++;
-      this.moving = message.frame.playing;
+      this.moving = message.moving ?? message.frame.playing;
       this.listener.frame(message.frame);
     }
   }

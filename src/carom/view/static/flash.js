@@ -141,6 +141,7 @@ export class Flash {
       marks.push({ side: 0, x, radius: wide, color, strength: (1 - ripple) ** 2 });
     }
     const { from, to } = this.arrow;
+    if (event.impulse.every((part) => part === 0)) return { marks, arrows: [] };
     const end = add(from, scale(sub(to, from), this.calm ? 1 : this.#rest));
     return { marks, arrows: [{ side: 0, from, to: end, color, strength }] };
   }

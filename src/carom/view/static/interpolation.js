@@ -41,7 +41,8 @@ export function wrap(x, period) {
 const mix = (a, b, s) => add(scale(a, 1 - s), scale(b, s));
 
 /**
- * Place, velocity and squared speed at s ∈ [0, h] after the first of two keyframes.
+ * Place, velocity and squared speed at s ∈ [0, h] after the first of two keyframes. Where nothing
+ * better is known energies are mixed, not velocities, so v2 is not always the square of v.
  * @param {Moment} a @param {Moment} b
  * @param {number} s @param {number} h
  * @param {Vec3} gravity @param {Vec3} period

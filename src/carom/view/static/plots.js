@@ -14,7 +14,7 @@ const TINY = 1e-12; // of the whole: less is rounding, and no line or number of 
 /** Columns of the past. */
 const [TIME, KINETIC, POTENTIAL, LOST, TOTAL, MOMENTUM] = [0, 1, 2, 3, 4, 5];
 const AXES = ["x", "y", "z"];
-const TONES = { agrees: "good", doubtful: "fair", not: "fair" };
+/** @type {Record<string, string>} */ const TONES = { agrees: "good", doubtful: "fair", not: "fair" };
 
 /**
  * @typedef {import("./protocol.js").Keyframe} Keyframe
@@ -137,7 +137,9 @@ export class Plots {
       series.unshift({ name, color: "--plot-theory" });
     }
     const label = histogram.scaled ? "speed × √(m/kT)" : "speed";
-    const peaks = lines.map(({ y }) => y.filter((part) => part < 10 / (width * bars.length)));
+    // The law of very few spheres may rise without limit at its end.
+    const most = 10 / (width * bars.length);
+    const peaks = lines.map(({ y }) => y.filter((part) => part < most));
     drawChart(section.canvas, {
       x: { low: 0, high: width * bars.length, label },
       y: { ...span([bars, ...peaks], { zero: true }), label: "probability density" },
@@ -146,8 +148,7 @@ export class Plots {
     });
     const said = verdict(histogram, free.length);
     const note = histogram.samples > 0 ? `${count(histogram.samples)} speeds` : "";
-    const tone = TONES[/** @type {"not"} */ (histogram.opinion)] ?? "";
-    section.say({ series, words: said, tone, note, now: histogram.fit ? said.split(" ")[0] : "" });
+    section.say({ series, words: said, tone: TONES[histogram.opinion], note, now: histogram.fit ? said.split(" ")[0] : "" });
     section.describe(`Histogram of ${note} with the line of theory. ${said}`);
   }
 
@@ -156,10 +157,8 @@ export class Plots {
     const { past } = this;
     const last = this.frame;
     if (last === null) return section.empty("Nothing measured yet.");
-    const total = past.column(TOTAL);
-    const size = Math.max(...past.column(KINETIC), ...total.map(Math.abs), 0);
-    const there = (/** @type {number} */ column) =>
-      past.column(column).some((part) => Math.abs(part) > TINY * size);
+    const size = Math.max(past.largest(KINETIC), past.largest(TOTAL));
+    const there = (/** @type {number} */ column) => past.largest(column) > TINY * size;
     const all = [
       { column: KINETIC, name: "kinetic", color: "--plot-1", value: last.kinetic, shown: true },
       { column: POTENTIAL, name: "potential", color: "--plot-2", value: last.potential, shown: there(POTENTIAL) },
@@ -181,17 +180,19 @@ export class Plots {
   #drawMomentum(section) {
     const { frame, scene } = this;
     if (frame === null || scene === null) return section.empty("Nothing measured yet.");
+    const free = freeAxes(scene.about).map((k) => AXES[k]);
     // What all spheres would have if they flew the same way is the scale: a thousandth is flat.
-    const most = Math.sqrt(2 * Math.max(frame.kinetic, ...this.past.column(KINETIC)) * this.speeds.total);
+    const most = Math.sqrt(2 * Math.max(frame.kinetic, this.past.largest(KINETIC)) * this.speeds.total);
     const rows = AXES.map((name, k) => ({
       column: MOMENTUM + k,
       name,
       color: `--plot-${k + 1}`,
       value: Math.abs(frame.momentum[k]) < TINY * most ? "0" : short(frame.momentum[k]),
+      // So that all three are seen where they lie on one another.
+      width: free.length === 3 ? 4 - 1.2 * k : undefined,
     }));
     this.#drawPast(section, rows, "momentum", { least: most / 500 });
     const length = `|P| = ${short(Math.hypot(...frame.momentum))}`;
-    const free = freeAxes(scene.about).map((k) => AXES[k]);
     const words =
       free.length === 3
         ? "Conserved: nothing pushes from outside."
@@ -204,16 +205,17 @@ export class Plots {
 
   /**
    * @param {Section} section
-   * @param {{column: number, color: string, dash?: boolean}[]} rows
+   * @param {{column: number, color: string, dash?: boolean, width?: number}[]} rows
    * @param {string} label @param {{zero?: boolean, least?: number}} more
    */
   #drawPast(section, rows, label, more) {
     const x = this.past.column(TIME);
-    const lines = rows.map(({ column, color, dash }) => ({
+    const lines = rows.map(({ column, color, dash, width }) => ({
       x,
       y: this.past.column(column),
       color,
       dash: dash ? [5, 4] : [],
+      width,
     }));
     drawChart(section.canvas, {
       x: { ...stretch(this.past), label: "time" },
@@ -229,19 +231,18 @@ export class Plots {
       return section.empty("In an ideal gas spheres pass through one another.");
     }
     const [x, y, error, theory] = [0, 1, 2, 3].map((column) => trace.column(column));
-    const known = theory.some((part) => part >= 0);
-    const lines = [{ x, y, error, color: "--plot-1", dash: /** @type {number[]} */ ([]), width: 1.75 }];
-    if (known) lines.push({ x, y: theory, error: new Float64Array(0), color: "--plot-theory", dash: [5, 3], width: 2 });
+    if (trace.length === 0) return section.empty("Counting: a rate needs 25 collisions or more.");
     const above = y.map((value, k) => value + error[k]);
     drawChart(section.canvas, {
       x: { ...stretch(trace), label: "time" },
       y: { ...span([above, theory], { zero: true }), label: "collisions per time" },
-      lines: lines.map(({ error: band, ...line }) => (band.length > 0 ? { ...line, error: band } : line)),
+      lines: [
+        { x, y, error, color: "--plot-1" },
+        { x, y: theory, color: "--plot-theory", dash: [5, 3], width: 2 },
+      ],
     });
     const mean = this.rates.recent();
-    if (mean === null) {
-      return section.empty("Counting: a rate needs 25 collisions or more.");
-    }
+    if (mean === null) return section.say({ words: "Counting anew." });
     const now = measured(mean.rate, mean.error);
     /** @type {Series[]} */ const series = [{ name: "counted", color: "--plot-1", value: now }];
     const expected = theory.at(-1) ?? NaN;
@@ -264,7 +265,8 @@ export class Plots {
     if (pressure.length !== walls.length || !pressure.some((part) => part > 0)) {
       return section.empty("Waiting for spheres to meet walls.");
     }
-    const all = pressure.map((value, k) => ({ name: walls[k].name, value }));
+    const names = briefly(walls.map(({ name }) => name));
+    const all = pressure.map((value, k) => ({ name: names[k], value }));
     const bars = all.slice(0, MOST_WALLS);
     section.canvas.style.setProperty("height", `${barsHeight(bars.length)}px`);
     drawBars(section.canvas, bars, { color: "--plot-bars", label: "pressure", theory });
@@ -295,6 +297,18 @@ function pushers({ about, mass }) {
 /** The axis of time; before there are two moments, some time to come. @param {Trace} trace */
 function stretch({ start, end }) {
   return { low: start, high: end > start ? end : start + 1 };
+}
+
+/** Names without the words that all of them end with: x−, not "x- wall of the Box". @param {string[]} names */
+export function briefly(names) {
+  const split = names.map((name) => name.split(" "));
+  const ends = (/** @type {number} */ k) =>
+    names.length > 1 && split.every((words) => words.length > k && words.at(-k) === split[0].at(-k));
+  let same = 0;
+  while (ends(same + 1)) same++;
+  const brief = split.map((words) => words.slice(0, words.length - same).join(" ").replace(/-$/, "−"));
+  const once = (/** @type {string} */ name) => brief.indexOf(name) === brief.lastIndexOf(name);
+  return brief.map((name, k) => (once(name) ? name : `${name} ${k + 1}`));
 }
 
 /** A number with the digits its error leaves: 47.3 ± 0.9. @param {number} value @param {number} error */

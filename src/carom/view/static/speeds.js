@@ -1,5 +1,5 @@
 /** How fast the spheres are, and whether that is what theory says. */
-import { SpeedLaw, compare, maxwell, tally } from "./statistics.js";
+import { SpeedLaw, compare, maxwell } from "./statistics.js";
 
 const BARS = 24;
 const MOST = 20000; // spheres looked at; of more, every second, third …
@@ -117,23 +117,24 @@ export class Speeds {
     let twice = 0;
     for (let i = 0; i < free.length; i++) {
       const at = 3 * free[i];
-      const [x, y, z] = [velocity[at] - dx, velocity[at + 1] - dy, velocity[at + 2] - dz];
+      const x = velocity[at] - dx;
+      const y = velocity[at + 1] - dy;
+      const z = velocity[at + 2] - dz;
       twice += mass[i] * (x * x + y * y + z * z);
     }
     const kT = twice / (this.law?.freedom ?? 3 * free.length);
     const stride = Math.floor(free.length / into.length);
-    const all = this.axes.length === 3;
-    const some = [0, 1, 2].map((k) => this.axes.includes(k));
+    const [tiedX, tiedY, tiedZ] = [0, 1, 2].map((k) => this.axes.includes(k));
     this.turn++;
     for (let j = 0; j < into.length; j++) {
       const i = Math.min(j * stride + (this.turn % stride), free.length - 1);
       const at = 3 * free[i];
-      const [x, y, z] = [velocity[at] - dx, velocity[at + 1] - dy, velocity[at + 2] - dz];
+      const x = velocity[at] - dx;
+      const y = velocity[at + 1] - dy;
+      const z = velocity[at + 2] - dz;
       const own = mass[i];
       const tied = total / (total - own);
-      const sum = all
-        ? tied * (x * x + y * y + z * z)
-        : (some[0] ? tied : 1) * x * x + (some[1] ? tied : 1) * y * y + (some[2] ? tied : 1) * z * z;
+      const sum = (tiedX ? tied : 1) * x * x + (tiedY ? tied : 1) * y * y + (tiedZ ? tied : 1) * z * z;
       into[j] = Math.sqrt((own * sum) / kT);
     }
     return kT;
@@ -152,9 +153,12 @@ export class Speeds {
     const tied = this.axes.length === 3 ? this.total / (this.total - this.mass[0]) : 1;
     const unit = this.equal && !still ? Math.sqrt(kT / (this.mass[0] * tied)) : 1;
     const width = (range / BARS) * unit;
-    const edges = Float64Array.from({ length: BARS }, (_, k) => ((k + 1) * range) / BARS);
-    const bars = tally(buffer, n, edges).subarray(0, BARS);
-    for (let k = 0; k < BARS; k++) bars[k] /= Math.max(1, n) * width;
+    const bars = new Float64Array(BARS);
+    const share = 1 / (Math.max(1, n) * width);
+    for (let k = 0; k < n; k++) {
+      const bar = Math.floor((buffer[k] * BARS) / range);
+      if (bar < BARS) bars[bar] += share;
+    }
     const few = this.free.length < MANY;
     const root = Math.sqrt(tied);
     return {
@@ -227,4 +231,4 @@ export function verdict({ opinion, fit, samples }, spheres) {
 }
 
 /** @param {number} p */
-const chance = (p) => (p < 0.001 ? "p < 0.001" : `p = ${p < 0.1 ? p.toPrecision(1) : p.toFixed(2)}`);
+const chance = (p) => (p < 0.001 ? "p < 0.001" : `p = ${p < 0.0995 ? p.toPrecision(1) : p.toFixed(2)}`);

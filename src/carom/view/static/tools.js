@@ -44,6 +44,7 @@ export class Hands {
     this.side = 0; // on which it was selected
     /** @type {"turn" | "add"} */ this.mode = "turn";
     this.trailing = true;
+    this.told = false; // how balls are added
     this.arrows = false; // of all spheres; drawn by whoever draws them
     /** @type {"dark" | "light"} */ this.theme = "dark";
     this.version = 0; // counts changes of what is drawn on top, besides those of time and camera
@@ -190,7 +191,8 @@ export class Hands {
       if (this.mode === "add") return this.leaveAdding();
       this.mode = "add";
       this.canvas.dataset.mode = "add";
-      this.toast("Press where the ball shall be, drag its velocity, let go. Escape ends adding.");
+      if (!this.told) this.toast("Press where the ball shall be, drag its velocity, let go. Escape ends adding.");
+      this.told = true;
     } else if (this.following) this.camera.follows = false;
     else if (this.selected === null) this.toast("Select a sphere first, then follow it.");
     else this.#follow(this.selected);

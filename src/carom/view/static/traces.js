@@ -62,6 +62,11 @@ export class Trace {
     return this.length > 0 ? this.at(this.length - 1, 0) : 0;
   }
 
+  /** The largest size in a column; breaks do not count. @param {number} column */
+  largest(column) {
+    return this.column(column).reduce((most, part) => (Math.abs(part) > most ? Math.abs(part) : most), 0);
+  }
+
   /** @param {number} column @returns {Float64Array} oldest first */
   column(column) {
     return Float64Array.from({ length: this.length }, (_, k) => this.at(k, column));
