@@ -7,6 +7,7 @@ import { recall, remember } from "./store.js";
 const CHOICES = ["auto", "dark", "light"];
 const LIGHT = matchMedia("(prefers-color-scheme: light)");
 
+/** @returns {"dark" | "light"} what the system wants */
 const ask = () => (LIGHT.matches ? "light" : "dark");
 
 export class Theme {
