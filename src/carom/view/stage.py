@@ -245,11 +245,7 @@ class Stage:
     @property
     def _origin(self) -> str:
         scene = self.sim.scene
-        return (
-            scene.origin.name
-            if scene is not None and scene.origin is not None
-            else ""
-        )
+        return scene.origin.name if scene is not None and scene.origin is not None else ""
 
     def _add(self, **ball: Any) -> None:
         self._refuse_beside_ticks()
