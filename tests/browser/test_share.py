@@ -28,12 +28,13 @@ def test_the_saved_picture_is_what_is_seen(show):
         dialog.get_by_role("button", name="Save picture").click()
     assert download.value.suggested_filename == "carom.png"
     picture = pixels(download.value.path().read_bytes())
-    assert picture.shape == (720, 1280, 3)
+    assert picture.shape == (1440, 2560, 3)  # twice as fine, without the panel and the bar
     x, y, _ = where(shown, (-3, 0, 0))
-    ball = picture[round(y) - 3 : round(y) + 3, round(x) - 3 : round(x) + 3].reshape(-1, 3)
+    right, bottom = shown.js("[carom.camera.insets.right, carom.camera.insets.bottom]")
+    x, y = round(2 * x + right), round(2 * y + bottom)
+    ball = picture[y - 3 : y + 3, x - 3 : x + 3].reshape(-1, 3)
     assert np.allclose(hue(ball.mean(axis=0)), hue(rgb(RED)), atol=0.25)
-    # The dialog shows the same.
-    shown.wait("carom.share.preview.width === 1280")
+    shown.wait("carom.share.preview.width === 2560")
 
 
 def test_the_link_opens_the_scene_in_another_tab(show):
