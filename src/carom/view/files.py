@@ -22,6 +22,8 @@ TABLE = {
             "colors",
             "connection",
             "controls",
+            "crowd",
+            "crowdlight",
             "frame",
             "gestures",
             "glsl",

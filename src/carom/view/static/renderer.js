@@ -48,13 +48,15 @@
  * @property {import("./buffers.js").Pair} pair
  * @property {Common} common uniforms of every program
  * @property {Uniforms} motion uniforms of the moment
- * @property {Uniforms} shadow uniforms of the shadow map
+ * @property {Uniforms} shadow uniforms of the shadow map and of the crowd
+ * @property {number} crowded how many spheres a ray meets on its way
  *
  * @typedef {Uniforms & {uView: Float32Array, uPort: number[], uLine: number}} Common
  */
 import { Arrows } from "./arrows.js";
 import { Pair, Traits } from "./buffers.js";
 import { THEMES } from "./colors.js";
+import { CrowdLight } from "./crowdlight.js";
 import { Frame } from "./frame.js";
 import { lampFrom } from "./light.js";
 import { direction } from "./matrix.js";
@@ -85,6 +87,7 @@ export class Renderer {
     this.governor = new Governor(software);
     this.traits = new Traits(gl);
     this.pairs = [new Pair(gl, this.traits), new Pair(gl, this.traits)];
+    this.crowds = [new CrowdLight(gl), new CrowdLight(gl)];
     this.frame = new Frame(gl);
     this.shadows = new Shadows(gl);
     this.room = new Room(gl, this.shadows);
@@ -109,6 +112,12 @@ export class Renderer {
     this.walls = buildWalls(scene.about);
     this.room.set(this.walls);
     this.traits.set(scene);
+    const { points, margin } = this.walls.bounds;
+    const ends = (/** @type {(...values: number[]) => number} */ end, /** @type {number} */ more) =>
+      [0, 1, 2].map((k) => end(...points.map((point) => point[k])) + more);
+    for (const crowd of this.crowds) {
+      crowd.start(scene, ends(Math.min, -margin), ends(Math.max, margin), this.traits.typical);
+    }
   }
 
   /** Draw a picture of the scene that was set. @param {Picture} picture */
@@ -166,7 +175,10 @@ export class Renderer {
     const look = this.#look(picture, side, level, ratio);
     const { options } = picture;
     if (level.shadow > 0 && !options.wire) {
-      look.shadow = this.shadows.cast(look, this.walls);
+      const { second } = picture.sides[side];
+      const scene = /** @type {Scene} */ (this.scene);
+      const crowd = this.crowds[side].uniforms(second, scene, picture.camera.up, look.eyeToWorld);
+      look.shadow = { ...this.shadows.cast(look, this.walls), ...crowd };
       this.frame.bind();
     }
     const [x, y, width, height] = look.common.uPort;
@@ -245,6 +257,7 @@ export class Renderer {
         uPerPeriod: about.period.map((length) => (length > 0 ? 1 / length : 0)),
       },
       shadow: NO_SHADOWS,
+      crowded: this.crowds[side].cover,
     };
   }
 }
