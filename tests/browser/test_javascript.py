@@ -36,7 +36,7 @@ def node(name, **environment):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("name", ["interpolation", "timeline", "page", "stack"])
+@pytest.mark.parametrize("name", ["interpolation", "timeline", "page", "stack", "quality", "crowd"])
 def test_modules(name):
     node(f"{name}.test.mjs")
 

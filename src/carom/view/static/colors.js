@@ -77,7 +77,7 @@ export const THEMES = {
     key: /** @type {Rgb} */ ([0.95, 0.93, 0.9]),
     sky: /** @type {Rgb} */ ([0.5, 0.52, 0.56]),
     ground: /** @type {Rgb} */ ([0.24, 0.24, 0.25]),
-    tint: /** @type {Rgb} */ ([-0.35, -0.35, -0.35]),
+    tint: /** @type {Rgb} */ ([-0.46, -0.46, -0.46]),
     arrow: unpack(0x3b4252),
     shade: 0.26,
     contact: 0.42,

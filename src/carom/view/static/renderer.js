@@ -61,7 +61,7 @@ import { Frame } from "./frame.js";
 import { lampFrom } from "./light.js";
 import { direction } from "./matrix.js";
 import { Overlay } from "./overlay.js";
-import { Governor, LEVELS, isSoftware } from "./quality.js";
+import { Governor, LEVELS, finest, isSoftware } from "./quality.js";
 import { Room } from "./room.js";
 import { Shadows } from "./shadows.js";
 import { Spheres } from "./spheres.js";
@@ -122,7 +122,7 @@ export class Renderer {
 
   /** Draw a picture of the scene that was set. @param {Picture} picture */
   draw(picture) {
-    this.#draw(picture, LEVELS[this.governor.level], devicePixelRatio);
+    this.#draw(picture, this.governor.level, devicePixelRatio);
     const started = performance.now();
     requestAnimationFrame(() => this.governor.took(performance.now() - started));
   }
@@ -131,24 +131,25 @@ export class Renderer {
   toBlob() {
     const { picture } = this;
     if (picture === null) return Promise.reject(new Error("there is no picture yet; draw one first"));
-    this.#draw(picture, LEVELS[LEVELS.length - 1], Math.max(2, devicePixelRatio));
+    this.#draw(picture, LEVELS.length - 1, Math.max(2, devicePixelRatio));
     return new Promise((done, failed) => {
       this.canvas.toBlob(
         (blob) => (blob === null ? failed(new Error("the browser made no PNG file")) : done(blob)),
         "image/png",
       );
-      this.#draw(picture, LEVELS[this.governor.level], devicePixelRatio);
+      this.#draw(picture, this.governor.level, devicePixelRatio);
     });
   }
 
   /**
-   * @param {Picture} picture @param {import("./quality.js").Level} level
-   * @param {number} finest pixels of the screen per pixel of the page
+   * @param {Picture} picture @param {number} quality index into LEVELS
+   * @param {number} screen its pixels per pixel of the page
    */
-  #draw(picture, level, finest) {
+  #draw(picture, quality, screen) {
     const { gl, canvas, frame } = this;
     this.picture = picture;
-    const ratio = Math.min(finest, level.finest);
+    const level = LEVELS[quality];
+    const ratio = Math.min(screen, finest(quality, this.traits.n));
     let [width, height] = [1, 1];
     for (const { viewport: v } of picture.sides) {
       width = Math.max(width, Math.round((v.x + v.width) * ratio));

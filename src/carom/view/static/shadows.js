@@ -11,7 +11,7 @@ import { Programs } from "./program.js";
 import { product } from "./stack.js";
 
 const NEAR_WALL = "3.5"; // radii from the wall at which a spot has faded away
-const LAMP = 0.09; // the lamp's radius over its distance: how fast half-shadows widen
+const LAMP = 0.075; // the lamp's radius over its distance: how fast half-shadows widen
 const SOFTEST = 0.18; // radii: a half-shadow's least radius
 const FLOOR_ONLY_FROM = 3000; // spheres, from which only the floor gets spots
 
