@@ -208,8 +208,14 @@ class FastEngine:
         with self._lock:
             position, velocity, image, count, resting = self._core.state()
             time, collisions, wall_collisions = self.time, self.collisions, self.wall_collisions
+        start = self._start
         return replace(
-            self._start.copy(),
+            start,
+            mass=start.mass.copy(),
+            radius=start.radius.copy(),
+            species=start.species.copy(),
+            color=start.color.copy(),
+            fixed=start.fixed.copy(),
             position=position,
             velocity=velocity,
             image=image,

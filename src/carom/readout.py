@@ -110,6 +110,18 @@ class Readout:
         array: NDArray[np.bool_] = readonly(self._motion.state.fixed)
         return array
 
+    @property
+    def resting(self) -> NDArray[np.bool_]:
+        """Which spheres lie on a wall and have stopped bouncing, (N,) bool."""
+        array: NDArray[np.bool_] = readonly(self._motion.state.resting)
+        return array
+
+    @property
+    def collision_count(self) -> NDArray[np.uint32]:
+        """Impulses each sphere has received, from walls too, (N,) uint32."""
+        array: NDArray[np.uint32] = readonly(self._motion.state.collision_count)
+        return array
+
     # The world.
 
     @property

@@ -178,6 +178,22 @@ class Camera:
             raise InputError(msg)
 
 
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Which scene of the library a `Scene` is.
+
+    Attributes
+    ----------
+    name : str
+        As on the command line.
+    options : dict
+        All options by their names in Python, those left out with their defaults.
+    """
+
+    name: str
+    options: dict[str, Any]
+
+
 @dataclass(frozen=True)
 class Scene:
     """Everything a run starts from; nothing in it changes.
@@ -204,6 +220,9 @@ class Scene:
     title : str
     wire : bool
         Draw spheres as wires, as the paper does.
+    origin : Origin, optional
+        Set by the scenes of the library. It is a remark: two scenes that differ in it alone
+        are equal, and `dataclasses.replace` keeps it.
 
     Raises
     ------
@@ -229,11 +248,13 @@ class Scene:
     color: Coloring = "energy"
     title: str = ""
     wire: bool = False
+    origin: Origin | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         _only(Spheres, "spheres", self.spheres)
         _only(Smooth, "rule", self.rule)
         _only((Camera, type(None)), "camera", self.camera)
+        _only((Origin, type(None)), "origin", self.origin)
         _only((int, np.integer, type(None)), "seed", self.seed)
         _only((bool, np.bool_), "collide", self.collide)
         _only((bool, np.bool_), "wire", self.wire)

@@ -233,27 +233,34 @@ class Simulation(Running):
         self._motion.return_to(bookmark.saved)
         self._scene = bookmark.scene
 
-    def show(self, *, port: int = 0, open_browser: bool = True) -> None:
+    def show(self, *, host: str = "127.0.0.1", port: int = 0, open_browser: bool = True) -> None:
         """Show it live in the browser until Ctrl-C.
 
         Parameters
         ----------
+        host : str
+            "127.0.0.1" is this machine only. An address of this machine in a network, or
+            "0.0.0.0", lets everybody there see it who has the address of the page.
         port : int
-            Of the address on this machine; 0 takes a free one.
+            Of the page's address; 0 takes a free one.
         open_browser : bool
             False only writes the address on standard error.
 
         Raises
         ------
         FileError
-            If the port is in use.
+            If the port or the address cannot be used.
+        InputError
+            If the host is none.
         """
-        from carom.view import serve
+        from carom.view import LiveView, serve
 
-        def announce(address: str) -> None:
-            sys.stderr.write(f"carom is at {address} (Ctrl-C ends it)\n")
+        def announce(view: LiveView) -> None:
+            sys.stderr.write(f"carom is at {view.url} (Ctrl-C ends it)\n")
+            if view.is_public:
+                sys.stderr.write(f"to watch only: {view.watch_url}\n")
 
-        serve(self, port=port, open_browser=open_browser, on_ready=announce)
+        serve(self, host=host, port=port, open_browser=open_browser, on_ready=announce)
 
     def __enter__(self) -> Self:
         return self

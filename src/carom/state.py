@@ -1,7 +1,6 @@
 """The two kinds of data that cross a border: `State` (arrays) and event records."""
 
-import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
 import numpy as np
@@ -74,4 +73,8 @@ class State:
 
     def copy(self) -> Self:
         """A state that shares no array with this one."""
-        return copy.deepcopy(self)
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        arrays: dict[str, Any] = {
+            k: v.copy() for k, v in values.items() if isinstance(v, np.ndarray)
+        }
+        return replace(self, **arrays)

@@ -3,13 +3,14 @@
 (async () => {
   const { MOTION } = await import("/glsl.js");
   const { motion } = await import("/interpolation.js");
+  const STILL = 0x80000000;
   const N = 1000;
   const gl = document.createElement("canvas").getContext("webgl2");
   const program = gl.createProgram();
   const sources = [
     [gl.VERTEX_SHADER, `#version 300 es\nprecision highp float;\n${MOTION}
-      out vec3 oX; out float oV;
-      void main() { float v2; oX = motion(v2); oV = v2; gl_Position = vec4(0, 0, 0, 1); }`],
+      out vec3 oX; out vec3 oV; out float oV2;
+      void main() { oX = motion(oV, oV2); gl_Position = vec4(0, 0, 0, 1); }`],
     [gl.FRAGMENT_SHADER, "#version 300 es\nprecision highp float; out vec4 c; void main() { c = vec4(1); }"],
   ];
   for (const [kind, source] of sources) {
@@ -18,13 +19,13 @@
     gl.compileShader(shader);
     gl.attachShader(program, shader);
   }
-  gl.transformFeedbackVaryings(program, ["oX", "oV"], gl.INTERLEAVED_ATTRIBS);
+  gl.transformFeedbackVaryings(program, ["oX", "oV", "oV2"], gl.INTERLEAVED_ATTRIBS);
   gl.linkProgram(program);
   gl.useProgram(program);
   let seed = 7;
   const random = () => (seed = (seed * 16807) % 2147483647) / 2147483647 - 0.5;
   const vector = (size) => [Math.fround(size * random()), Math.fround(size * random()), Math.fround(size * random())];
-  const worst = { cases: 0, place: 0, energy: 0 };
+  const worst = { cases: 0, place: 0, velocity: 0, energy: 0 };
   for (const [period, g] of [
     [[0, 0, 0], [0, 0, 0]],
     [[0, 0, 0], [0, -1, -9.75]],
@@ -46,8 +47,10 @@
       const start = hit.map((part, k) => part - late[k] * when - 0.5 * g[k] * when * when);
       const end = free(start, late, h).map((part, k) => Math.fround(
         period[k] > 0 ? part - period[k] * Math.round(part / period[k]) : part));
-      const a = { x, v, count: hits === 3 ? 0x80000000 : 0x7ffffffe };
-      const b = { x: end, v: w.map(Math.fround), count: hits === 3 ? 2 : (0x7ffffffe + hits) & 0x7fffffff };
+      // Counts run over the end of 31 bits.
+      const a = { x, v, count: hits === 3 ? STILL : 0x7ffffffe };
+      const total = hits === 3 ? 2 : (0x7ffffffe + hits) & 0x7fffffff;
+      const b = { x: end, v: w.map(Math.fround), count: total };
       cases.push([a, b]);
       x0.push(...a.x); v0.push(...a.v); x1.push(...b.x); v1.push(...b.v);
       c0.push(a.count); c1.push(b.count);
@@ -75,22 +78,24 @@
     gl.bindBuffer(gl.ARRAY_BUFFER, null);
     const out = gl.createBuffer();
     gl.bindBuffer(gl.TRANSFORM_FEEDBACK_BUFFER, out);
-    gl.bufferData(gl.TRANSFORM_FEEDBACK_BUFFER, 16 * N, gl.STREAM_READ);
+    gl.bufferData(gl.TRANSFORM_FEEDBACK_BUFFER, 28 * N, gl.STREAM_READ);
     gl.bindBufferBase(gl.TRANSFORM_FEEDBACK_BUFFER, 0, out);
     gl.enable(gl.RASTERIZER_DISCARD);
     gl.beginTransformFeedback(gl.POINTS);
     gl.drawArrays(gl.POINTS, 0, N);
     gl.endTransformFeedback();
-    const got = new Float32Array(4 * N);
+    const got = new Float32Array(7 * N);
     gl.getBufferSubData(gl.TRANSFORM_FEEDBACK_BUFFER, 0, got);
     cases.forEach(([a, b], i) => {
-      const { x, v2 } = motion(a, b, s, h, g, period);
+      const { x, v, v2 } = motion(a, b, s, h, g, period);
       const off = x.map((part, k) => {
-        const gap = Math.abs(part - got[4 * i + k]);
+        const gap = Math.abs(part - got[7 * i + k]);
         return period[k] > 0 ? Math.min(gap, Math.abs(period[k] - gap)) : gap;
       });
       worst.place = Math.max(worst.place, ...off);
-      worst.energy = Math.max(worst.energy, Math.abs(v2 - got[4 * i + 3]));
+      const turned = v.map((part, k) => Math.abs(part - got[7 * i + 3 + k]));
+      worst.velocity = Math.max(worst.velocity, ...turned);
+      worst.energy = Math.max(worst.energy, Math.abs(v2 - got[7 * i + 6]));
       worst.cases++;
     });
   }

@@ -39,7 +39,10 @@ def node(name, **environment):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("name", ["interpolation", "timeline", "page", "stack"])
+NAMES = sorted({path.name.split(".")[0] for path in HERE.glob("*.test.mjs")} - {"protocol"})
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_modules(name):
     node(f"{name}.test.mjs")
 
@@ -67,7 +70,8 @@ def test_protocol_on_both_sides(tmp_path):
         "frame": {
             "n": 2, "epoch": 4, "scene": 6, "playing": False, "failed": True,
             "twin": True, "reversed": True, "momentum": [7.0, -8.0, 9.5], "temperature": 1.5,
-            "missed": 11, "overlap": 0.25, "t": 0.1, "clock": 12.5, "gravity": [0.0, 0.5, -9.81], "kinetic": 1.0,
+            "missed": 11, "overlap": 0.25, "kinetic": 1.0,
+            "t": 0.1, "clock": 12.5, "gravity": [0.0, 0.5, -9.81],
             "potential": 2.0, "dissipated": -3.0, "drift": 1e-16, "collisions": 2**50 + 1,
             "wallCollisions": 3, "speed": 0.125, "reached": 0.1,
             "position": np.float32(state.position).ravel().tolist(),

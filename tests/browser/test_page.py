@@ -241,6 +241,7 @@ def test_the_shaders_motion_is_the_tested_one(show):
     worst = shown.js(Path(__file__).with_name("compare_motion.js").read_text())
     assert worst["cases"] == 4000
     assert worst["place"] < 2e-4
+    assert worst["velocity"] < 2e-5
     assert worst["energy"] < 2e-3
 
 

@@ -1,11 +1,15 @@
 """Scenes by name: lists, options, values as typed, and names that do not exist."""
 
+from dataclasses import replace
+from typing import Annotated
+
 import pytest
 
 from carom import scenes
 from carom.errors import InputError, UnknownNameError
-from carom.scene import Scene, Spheres
-from carom.scenes import Option, registry
+from carom.scene import Origin, Scene, Spheres
+from carom.scene_file import dump, parse
+from carom.scenes import Option, Slider, registry
 
 ALL = [
     "bounce",
@@ -168,3 +172,86 @@ def test_a_scene_needs_types_and_defaults():
         @scenes.scene
         def untyped(n=3) -> Scene:
             raise AssertionError
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_sliders_hold_the_default_and_their_ends_make_scenes(name):
+    for option in scenes.options(name):
+        if option.name == "seed" or option.type is bool:
+            assert (option.low, option.high, option.log) == (None, None, False)
+            continue
+        assert option.low <= option.default <= option.high
+        for end in (option.low, option.high):
+            assert type(end) is option.type
+            scenes.build(name, {option.name: end}).build()
+
+
+def test_an_option_with_a_slider(monkeypatch):
+    monkeypatch.setattr(registry, "_SCENES", dict(registry._SCENES))
+
+    @scenes.scene
+    def slid(
+        n: Annotated[int, "a remark", Slider(1, 1e3, log=True)] = 10,
+        size: Annotated[float, Slider(-1, 2)] = 1.0,
+        plain: Annotated[float, "no slider"] = 1.0,
+    ) -> Scene:
+        """Balls in a row."""
+        return Scene(Spheres.of([(2 * i, 0, 0) for i in range(n)], radius=size))
+
+    n, size, plain = scenes.options("slid")
+    assert n == Option("n", int, 10, "", 1, 1000, True)
+    assert type(n.high) is int
+    assert (size.type, size.low, size.high, size.log) == (float, -1.0, 2.0, False)
+    assert (plain.type, plain.low, plain.high) == (float, None, None)
+    assert len(slid(n=2000).spheres) == 2000  # a slider forbids nothing
+
+
+@pytest.mark.parametrize(
+    ("ends", "message"),
+    [
+        ((2, 1), "cannot go from 2 to 1$"),
+        ((1, 1), "cannot go from 1 to 1$"),
+        ((0, 1, True), "from 0 to 1; with log it must start above 0"),
+        ((0, float("inf")), "high of the Slider is inf"),
+    ],
+)
+def test_sliders_that_cannot_be(ends, message):
+    with pytest.raises(InputError, match=message):
+        Slider(*ends)
+
+
+def test_only_numbers_have_sliders():
+    with pytest.raises(InputError, match="option 'box' of a scene is no number"):
+
+        @scenes.scene
+        def switched(box: Annotated[bool, Slider(0, 1)] = True) -> Scene:
+            raise AssertionError
+
+    with pytest.raises(InputError, match=r"n must be a whole number, not 0\.5"):
+
+        @scenes.scene
+        def halved(n: Annotated[int, Slider(0.5, 1)] = 1) -> Scene:
+            raise AssertionError
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_a_scene_knows_where_it_came_from(name):
+    defaults = {option.name: option.default for option in scenes.options(name)}
+    assert scenes.build(name).origin == Origin(name, defaults)
+    first = scenes.options(name)[0]
+    made = scenes.find(name)(first.low)
+    assert made.origin == Origin(name, {**defaults, first.name: first.low})
+    assert scenes.build(made.origin.name, made.origin.options) == made
+
+
+def test_the_origin_is_a_remark():
+    made = scenes.gas(n=20.0, seed=3)
+    assert made.origin.options == {"n": 20, "packing_fraction": 0.05, "speed": 1.0, "seed": 3}
+    assert type(made.origin.options["n"]) is int
+    assert replace(made, origin=None) == made
+    assert replace(made, pace=9.0).origin is made.origin
+    assert "origin" not in dump(made)
+    assert parse(dump(made)).origin is None
+    assert parse("scene = 'gas'\n[options]\nn = 20\nseed = 3").origin == made.origin
+    with pytest.raises(InputError, match="origin must be of type Origin"):
+        replace(made, origin="gas")

@@ -65,10 +65,13 @@ class TestScenes:
         listed = data("scenes")
         assert [entry["name"] for entry in listed] == scenes.names()
         fluid = data("scenes fluid")
-        assert {key: fluid["options"][0][key] for key in ("name", "type", "default")} == {
+        assert {k: v for k, v in fluid["options"][0].items() if k != "help"} == {
             "name": "n",
             "type": "int",
             "default": 4000,
+            "low": 32,
+            "high": 50_000,
+            "log": True,
         }
 
 

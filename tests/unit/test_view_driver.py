@@ -66,6 +66,9 @@ class Stub:
     def __getattr__(self, name):
         return getattr(self._real, name)
 
+    def __len__(self):
+        return len(self._real)
+
     def run(self, *, duration, progress):
         if self.error is not None and duration > 0:
             raise self.error
@@ -123,8 +126,8 @@ def test_restart_goes_back_to_the_same_start():
     start = sim.position.copy()
     with Watcher(sim) as page:
         page.wait_for(lambda head: head["collisions"] > 0)
-        page.order("pause")
         page.order("restart")
+        page.order("pause")
         head = page.wait_for(lambda head: head["epoch"] == 1)
     assert (head["t"], head["collisions"], head["flags"]) == (0.0, 0.0, 0)
     assert np.array_equal(sim.position, start)

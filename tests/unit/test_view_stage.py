@@ -95,7 +95,7 @@ def test_a_step_that_searches_too_long_ends(monkeypatch):
     sim = carom.Simulation(walls=carom.Box(10, 10, 10))
     sim.add((0, 0, -3), velocity=(1, 0, 0))
     sim.add((0, 0, 3), velocity=(1, 0, 0))
-    with pytest.raises(RunError, match="no collision came within 0.2 seconds"):
+    with pytest.raises(RunError, match=r"no collision came within 0\.2 seconds"):
         act(opened(sim), "step")
 
 

@@ -3,6 +3,7 @@
 import sys
 import traceback
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Annotated, Any
 
 import typer
@@ -111,10 +112,7 @@ def _print_scenes(quiet: bool) -> None:
 
 
 def _described(name: str) -> dict[str, Any]:
-    options = [
-        {"name": o.name, "type": o.type.__name__, "default": o.default, "help": o.help}
-        for o in scenes.options(name)
-    ]
+    options = [{**asdict(o), "type": o.type.__name__} for o in scenes.options(name)]
     return {"name": name, "description": scenes.describe(name), "options": options}
 
 

@@ -17,11 +17,12 @@ from carom.scenes.phase_1 import phase_1
 from carom.scenes.phase_2 import phase_2, phase_2_lines
 from carom.scenes.phase_3 import phase_3
 from carom.scenes.phase_4 import phase_4
-from carom.scenes.registry import Option, build, describe, find, names, options, scene
+from carom.scenes.registry import Option, Slider, build, describe, find, names, options, scene
 from carom.scenes.two_balls import two_balls
 
 __all__ = [
     "Option",
+    "Slider",
     "bounce",
     "break_shot",
     "build",

@@ -1,6 +1,7 @@
 """Balls that fall, bounce and come to rest on the floor."""
 
 import math
+from typing import Annotated
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from carom.place import random_positions
 from carom.random_numbers import Random
 from carom.rules import Smooth
 from carom.scene import Scene, Spheres
-from carom.scenes.registry import scene
+from carom.scenes.registry import Slider, scene
 from carom.walls import Box
 
 HEIGHT = 10.0
@@ -21,7 +22,12 @@ CONTACT_TIME = 1e-6
 
 
 @scene
-def bounce(n: int = 25, restitution: float = 0.8, gravity: float = 9.81, seed: int = 1) -> Scene:
+def bounce(
+    n: Annotated[int, Slider(1, 200)] = 25,
+    restitution: Annotated[float, Slider(0, 1)] = 0.8,
+    gravity: Annotated[float, Slider(0, 20)] = 9.81,
+    seed: int = 1,
+) -> Scene:
     """Balls drop into a box, bounce lower and lower, and end up sliding on its floor.
 
     Parameters

@@ -1,13 +1,14 @@
 """The break of pool, in three dimensions."""
 
 import math
+from typing import Annotated
 
 import numpy as np
 
 from carom.checks import number
 from carom.color import SPECIES
 from carom.scene import Scene, Spheres
-from carom.scenes.registry import scene
+from carom.scenes.registry import Slider, scene
 from carom.walls import Box
 
 #: Neighbours in the rack are this much more than a diameter apart, as on a table: which
@@ -16,7 +17,9 @@ GAP = 1e-3
 
 
 @scene
-def break_shot(layers: int = 5, speed: float = 12.0) -> Scene:
+def break_shot(
+    layers: Annotated[int, Slider(1, 12)] = 5, speed: Annotated[float, Slider(1, 40)] = 12.0
+) -> Scene:
     """A cue ball breaks a pyramid of resting balls.
 
     Parameters

@@ -1,18 +1,23 @@
 """The hard-sphere fluid of the textbooks."""
 
+from typing import Annotated
+
 import numpy as np
 
 from carom.checks import count
 from carom.place import cube_edge, fcc, fluid_cells, maxwell
 from carom.random_numbers import Random
 from carom.scene import Scene, Spheres
-from carom.scenes.registry import scene
+from carom.scenes.registry import Slider, scene
 from carom.walls import Periodic
 
 
 @scene
 def fluid(
-    n: int = 4000, packing_fraction: float = 0.3, temperature: float = 1.0, seed: int = 1
+    n: Annotated[int, Slider(32, 50_000, log=True)] = 4000,
+    packing_fraction: Annotated[float, Slider(0.01, 0.5)] = 0.3,
+    temperature: Annotated[float, Slider(0.1, 10, log=True)] = 1.0,
+    seed: int = 1,
 ) -> Scene:
     """A hard-sphere fluid in a periodic cube, at any packing fraction.
 

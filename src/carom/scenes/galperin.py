@@ -1,13 +1,15 @@
 """Galperin's billiard: collisions that count the digits of pi."""
 
+from typing import Annotated
+
 from carom.checks import number
 from carom.scene import Scene, Spheres
-from carom.scenes.registry import scene
+from carom.scenes.registry import Slider, scene
 from carom.walls import Plane
 
 
 @scene
-def galperin(digits: int = 3) -> Scene:
+def galperin(digits: Annotated[int, Slider(1, 6)] = 3) -> Scene:
     """Galperin's billiard: two balls and a wall whose collisions count the digits of pi.
 
     A light ball rests between a wall and a ball 100^(digits - 1) times as heavy that comes

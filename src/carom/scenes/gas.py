@@ -1,17 +1,24 @@
 """A gas that finds its speeds by itself."""
 
+from typing import Annotated
+
 import numpy as np
 
 from carom.checks import count, number
 from carom.place import cube_edge, random_positions
 from carom.random_numbers import Random
 from carom.scene import Scene, Spheres
-from carom.scenes.registry import scene
+from carom.scenes.registry import Slider, scene
 from carom.walls import Box
 
 
 @scene
-def gas(n: int = 500, packing_fraction: float = 0.05, speed: float = 1.0, seed: int = 1) -> Scene:
+def gas(
+    n: Annotated[int, Slider(10, 5000, log=True)] = 500,
+    packing_fraction: Annotated[float, Slider(0.001, 0.25, log=True)] = 0.05,
+    speed: Annotated[float, Slider(0.1, 5)] = 1.0,
+    seed: int = 1,
+) -> Scene:
     """A gas in a box: all start at one speed, and collisions spread it into Maxwell's law.
 
     Parameters

@@ -1,21 +1,23 @@
 """Brownian motion: a giant among many small spheres."""
 
+from typing import Annotated
+
 import numpy as np
 
 from carom.checks import count, number
 from carom.place import cube_root, maxwell, random_positions
 from carom.random_numbers import Random
 from carom.scene import Scene, Spheres
-from carom.scenes.registry import scene
+from carom.scenes.registry import Slider, scene
 from carom.walls import Box
 
 
 @scene
 def giant(
-    n: int = 1000,
-    radius_ratio: float = 8.0,
-    mass_ratio: float = 50.0,
-    packing_fraction: float = 0.1,
+    n: Annotated[int, Slider(10, 5000, log=True)] = 1000,
+    radius_ratio: Annotated[float, Slider(1, 20)] = 8.0,
+    mass_ratio: Annotated[float, Slider(1, 1000, log=True)] = 50.0,
+    packing_fraction: Annotated[float, Slider(0.01, 0.2)] = 0.1,
     seed: int = 1,
 ) -> Scene:
     """Brownian motion: one giant is pushed about by many small spheres in a box.

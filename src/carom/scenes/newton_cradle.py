@@ -1,16 +1,20 @@
 """Newton's cradle, with walls in place of strings."""
 
+from typing import Annotated
+
 import numpy as np
 
 from carom.checks import count, number
 from carom.color import SPECIES
 from carom.scene import Scene, Spheres
-from carom.scenes.registry import scene
+from carom.scenes.registry import Slider, scene
 from carom.walls import Box
 
 
 @scene
-def newton_cradle(n: int = 5, moving: int = 1) -> Scene:
+def newton_cradle(
+    n: Annotated[int, Slider(2, 20)] = 5, moving: Annotated[int, Slider(1, 4)] = 1
+) -> Scene:
     """Newton's cradle: as many balls leave the touching row as come in.
 
     Walls at both ends send the balls back, as the strings of a real cradle do.

@@ -4,17 +4,21 @@ T. J. Liggett, *Three-Dimensional Collisions in Java* (2017). One tick is one un
 lengths are pixels.
 """
 
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 
 from carom.color import hsb
 from carom.random_numbers import Random
 from carom.scene import Spheres
+from carom.scenes.registry import Slider
 
 RADIUS = 50.0
 WIDTH = 500.0
 BALLS = 12
+#: What the phases' sliders span.
+Number = Annotated[int, Slider(1, 60)]
+Width = Annotated[float, Slider(300, 1500)]
 #: Ticks per second at speed 1x.
 PACE = 60.0
 #: Velocities are even between minus and plus these, pixels per tick.

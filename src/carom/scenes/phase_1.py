@@ -5,13 +5,13 @@ import numpy as np
 from carom.checks import count
 from carom.random_numbers import Random
 from carom.scene import Scene
-from carom.scenes.paper import BALLS, PACE, WIDTH, balls
+from carom.scenes.paper import BALLS, PACE, WIDTH, Number, Width, balls
 from carom.scenes.registry import scene
 from carom.walls import Box
 
 
 @scene
-def phase_1(n: int = BALLS, width: float = WIDTH, seed: int = 1) -> Scene:
+def phase_1(n: Number = BALLS, width: Width = WIDTH, seed: int = 1) -> Scene:
     """The paper's phase 1: balls in a cube that pass through each other.
 
     They start at the centre, one on another.

@@ -7,13 +7,13 @@ import numpy as np
 from carom.place import random_positions
 from carom.random_numbers import Random
 from carom.scene import Scene
-from carom.scenes.paper import PACE, RADIUS, WIDTH, balls
+from carom.scenes.paper import PACE, RADIUS, WIDTH, Width, balls
 from carom.scenes.registry import scene
 from carom.walls import Box
 
 
 @scene
-def phase_2(width: float = WIDTH, seed: int = 1) -> Scene:
+def phase_2(width: Width = WIDTH, seed: int = 1) -> Scene:
     """The paper's phase 2: two balls of equal mass that collide in a cube.
 
     Parameters

@@ -6,13 +6,13 @@ from carom.checks import count
 from carom.place import random_positions
 from carom.random_numbers import Random
 from carom.scene import Scene
-from carom.scenes.paper import BALLS, PACE, RADIUS, WIDTH, balls
+from carom.scenes.paper import BALLS, PACE, RADIUS, WIDTH, Number, Width, balls
 from carom.scenes.registry import scene
 from carom.walls import Box
 
 
 @scene
-def phase_3(n: int = BALLS, width: float = WIDTH, seed: int = 1) -> Scene:
+def phase_3(n: Number = BALLS, width: Width = WIDTH, seed: int = 1) -> Scene:
     """The paper's phase 3: many equal balls that collide in a cube.
 
     Parameters

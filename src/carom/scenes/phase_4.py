@@ -4,7 +4,7 @@ from carom.checks import count
 from carom.place import random_positions
 from carom.random_numbers import Random, total
 from carom.scene import Scene
-from carom.scenes.paper import BALLS, PACE, WIDTH, balls
+from carom.scenes.paper import BALLS, PACE, WIDTH, Number, Width, balls
 from carom.scenes.registry import scene
 from carom.walls import Box
 
@@ -12,7 +12,7 @@ SMALLEST, LARGEST = 20.0, 60.0
 
 
 @scene
-def phase_4(n: int = BALLS, width: float = WIDTH, seed: int = 1) -> Scene:
+def phase_4(n: Number = BALLS, width: Width = WIDTH, seed: int = 1) -> Scene:
     """The paper's phase 4: balls of different size and mass that collide in a cube.
 
     Radii are even between 20 and 60 pixels; masses go with the radius cubed and have mean 1.

@@ -4,17 +4,48 @@ import functools
 import inspect
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Any, ParamSpec
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, ParamSpec, get_args, get_origin
 
 import numpy as np
 
 from carom.checks import nearest, number
 from carom.errors import InputError, UnknownNameError
-from carom.scene import Scene
+from carom.scene import Origin, Scene
 
 P = ParamSpec("P")
 SceneFunction = Callable[..., Scene]
+
+
+@dataclass(frozen=True, slots=True)
+class Slider:
+    """What a slider for an option spans: ``n: Annotated[int, Slider(1, 2000, log=True)] = 10``.
+
+    It says where values are worth trying, not what is allowed.
+
+    Parameters
+    ----------
+    low, high : float
+    log : bool
+        Equal ways on the slider are equal factors.
+
+    Raises
+    ------
+    InputError
+        If it spans nothing, or `log` asks for a factor from 0 or below.
+    """
+
+    low: float
+    high: float
+    log: bool = False
+
+    def __post_init__(self) -> None:
+        number("low of the Slider", self.low)
+        number("high of the Slider", self.high)
+        if not self.low < self.high or (self.log and self.low <= 0):
+            limit = "; with log it must start above 0" if self.log else ""
+            msg = f"a Slider cannot go from {self.low:g} to {self.high:g}{limit}"
+            raise InputError(msg)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,12 +61,19 @@ class Option:
     default : object
     help : str
         One line.
+    low, high : float or None
+        What a slider for it spans; None where it has none.
+    log : bool
+        The slider is logarithmic.
     """
 
     name: str
     type: type[Any]
     default: Any
     help: str
+    low: float | None = None
+    high: float | None = None
+    log: bool = False
 
     def checked(self, value: Any) -> Any:
         """`value` in this option's type; a whole number may come as 1e6.
@@ -103,9 +141,9 @@ def scene(function: Callable[P, Scene]) -> Callable[P, Scene]:
     """Register a function that returns a `Scene`, under its name with dashes.
 
     Its parameters are the scene's options: they need a type (int, float, bool or str) and a
-    default; their help comes from the docstring's numpydoc section *Parameters*. The
-    docstring's first line describes the scene in lists. Values are checked before the
-    function sees them.
+    default, and may have a `Slider` annotated to the type; their help comes from the
+    docstring's numpydoc section *Parameters*. The docstring's first line describes the scene
+    in lists. Values are checked before the function sees them.
 
     Raises
     ------
@@ -119,6 +157,7 @@ def scene(function: Callable[P, Scene]) -> Callable[P, Scene]:
     doc = inspect.getdoc(function) or ""
     helps = dict(re.findall(r"^(\w+) : .*\n((?:    .*\n?)+)", doc, re.MULTILINE))
     signature = inspect.signature(function, eval_str=True)
+    name = function.__name__.replace("_", "-")
     options = tuple(_option(p, helps.get(p.name, "")) for p in signature.parameters.values())
 
     @functools.wraps(function)
@@ -127,22 +166,32 @@ def scene(function: Callable[P, Scene]) -> Callable[P, Scene]:
         given = {o.name: o for o in options}
         for key, value in bound.arguments.items():
             bound.arguments[key] = given[key].checked(value)
-        return function(*bound.args, **bound.kwargs)
+        bound.apply_defaults()
+        made = function(*bound.args, **bound.kwargs)
+        return replace(made, origin=Origin(name, dict(bound.arguments)))
 
-    name = function.__name__.replace("_", "-")
     _SCENES[name] = _Entry(doc.split("\n")[0].rstrip("."), options, make)
     return make
 
 
 def _option(parameter: inspect.Parameter, text: str) -> Option:
     """Check one parameter of a scene function."""
-    if parameter.annotation not in (int, float, bool, str) or parameter.default is parameter.empty:
+    annotated = get_origin(parameter.annotation) is Annotated
+    kind, *notes = get_args(parameter.annotation) if annotated else (parameter.annotation,)
+    if kind not in (int, float, bool, str) or parameter.default is parameter.empty:
         msg = (
             f"option {parameter.name!r} of a scene needs a type (int, float, bool or str) "
             "and a default value"
         )
         raise InputError(msg)
-    return Option(parameter.name, parameter.annotation, parameter.default, " ".join(text.split()))
+    option = Option(parameter.name, kind, parameter.default, " ".join(text.split()))
+    for slider in (note for note in notes if isinstance(note, Slider)):
+        if kind not in (int, float):
+            msg = f"option {parameter.name!r} of a scene is no number, so it has no Slider"
+            raise InputError(msg)
+        ends = {"low": option.checked(slider.low), "high": option.checked(slider.high)}
+        option = replace(option, **ends, log=slider.log)
+    return option
 
 
 def names() -> list[str]:

@@ -1,15 +1,20 @@
 """Two balls meet."""
 
+from typing import Annotated
+
 from carom.checks import number
 from carom.rules import Smooth
 from carom.scene import Scene, Spheres
-from carom.scenes.registry import scene
+from carom.scenes.registry import Slider, scene
 from carom.walls import Box, Open
 
 
 @scene
 def two_balls(
-    offset: float = 0.4, mass_ratio: float = 2.0, restitution: float = 1.0, box: bool = True
+    offset: Annotated[float, Slider(-1.5, 1.5)] = 0.4,
+    mass_ratio: Annotated[float, Slider(0.1, 10, log=True)] = 2.0,
+    restitution: Annotated[float, Slider(0, 1)] = 1.0,
+    box: bool = True,
 ) -> Scene:
     """Two balls of different mass meet off centre.
 

@@ -9,7 +9,7 @@ from carom.errors import CaromError, InputError
 from carom.sketch.program import Program
 from carom.sketch.runner import Runner
 from carom.view import network, tokens
-from carom.view.files import load_sketch
+from carom.view.files import SKETCH, load
 from carom.view.server import Server
 
 HOST = "127.0.0.1"  #: a student's program is shown on its own machine only
@@ -61,7 +61,7 @@ class SketchView:
             self._socket,
             network.reached_as(HOST),
             {token: "control"},
-            load_sketch(),
+            load(SKETCH),
             order=lambda command, reply: self._runner.order(command, reply),
             poke=lambda: self._runner.poke(),
         )

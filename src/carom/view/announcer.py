@@ -37,7 +37,7 @@ class Announcer:
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
         self._number = self._scene_number = 0
-        self._scene, self._described = b"", (-1, -1)
+        self._scene, self._described = b"", -1
         self._readings: tuple[Reading, ...] = ()
         self._read_at = self._walls_at = -math.inf
         self._read_epoch = -1
@@ -46,17 +46,17 @@ class Announcer:
     def snapshot(self, *, playing: bool, speed: float, reached: float, failure: str) -> Snapshot:
         """Everything a page may be sent now."""
         stage, clock = self._stage, time.perf_counter()
-        states = [sim.state for sim in stage.shown]
-        if self._described != (stage.epoch, len(states[0])):
-            self._described = (stage.epoch, len(states[0]))
+        if self._described != stage.epoch:
+            self._described = stage.epoch
             self._scene_number += 1
-            about = portrait(stage.sim, states[0], stage.key)
-            self._scene = encode_scene(states[0], self._scene_number, about)
+            state = stage.sim.state
+            about = portrait(stage.sim, state, stage.key)
+            self._scene = encode_scene(state, self._scene_number, about)
         self._read(clock, playing)
         gx, gy, gz = stage.sim.world.gravity.tolist()
         frames = tuple(
             encode_frame(
-                state,
+                sim,
                 Meters(
                     clock=clock,
                     gravity=(gx, gy, gz),
@@ -78,7 +78,7 @@ class Announcer:
                     reversed=stage.reversed,
                 ),
             )
-            for twin, (state, reading) in enumerate(zip(states, self._readings, strict=True))
+            for twin, (sim, reading) in enumerate(zip(stage.shown, self._readings, strict=True))
         )
         self._note("failure", failure)
         self._note("settings", stage.settings())
@@ -86,9 +86,7 @@ class Announcer:
             self._note("event", stage.event)
         self._read_walls(clock, playing)
         self._number += 1
-        return Snapshot(
-            self._number, frames, self._scene_number, self._scene, dict(self._notes)
-        )
+        return Snapshot(self._number, frames, self._scene_number, self._scene, dict(self._notes))
 
     def source(self) -> dict[str, str]:
         """The simulation as text, or the reason why not."""

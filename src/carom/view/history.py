@@ -50,15 +50,15 @@ class History:
         """Add a mark; of those too many, let go the ones that leave the smallest gaps."""
         marks = self._marks
         marks.append(mark)
-        while len(marks) > 2 and (
-            len(marks) > MOST or sum(mark.nbytes for mark in marks) > BYTES
-        ):
+        while len(marks) > 2 and (len(marks) > MOST or sum(mark.nbytes for mark in marks) > BYTES):
             now = len(marks)
             # A gap counts for less the longer ago it is.
             least = min(
                 range(1, now - 1),
-                key=lambda k: (marks[k + 1].count - marks[k - 1].count + 1)
-                / (mark.count - marks[k].count + 1),
+                key=lambda k: (
+                    (marks[k + 1].count - marks[k - 1].count + 1)
+                    / (mark.count - marks[k].count + 1)
+                ),
             )
             del marks[least]
 

@@ -38,14 +38,53 @@ exactly the keys of `wire.OPERATIONS`.
 
 import json
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from carom.errors import InputError
-from carom.state import State
+from carom.state import Floats, State
 from carom.view import wire
 from carom.view.wire import FRAME_HEADER, SCENE_HEADER, refuse
+
+
+class Moment(Protocol):
+    """What a frame takes of a `State`, or of a simulation without copying it."""
+
+    def __len__(self) -> int: ...
+
+    @property
+    def position(self) -> Floats:
+        """(n, 3)."""
+
+    @property
+    def velocity(self) -> Floats:
+        """(n, 3)."""
+
+    @property
+    def collision_count(self) -> NDArray[np.uint32]:
+        """(n,)."""
+
+    @property
+    def fixed(self) -> NDArray[np.bool_]:
+        """(n,)."""
+
+    @property
+    def resting(self) -> NDArray[np.bool_]:
+        """(n,)."""
+
+    @property
+    def time(self) -> float:
+        """Simulated time."""
+
+    @property
+    def collisions(self) -> int:
+        """Between spheres."""
+
+    @property
+    def wall_collisions(self) -> int:
+        """With walls."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +122,7 @@ class Command:
         return self.values[key]
 
 
-def encode_frame(state: State, meters: Meters) -> bytes:
+def encode_frame(now: Moment, meters: Meters) -> bytes:
     """Pack one frame, `wire.FRAME_HEADER.size` + 28 n bytes."""
     m = meters
     flags = (
@@ -93,18 +132,18 @@ def encode_frame(state: State, meters: Meters) -> bytes:
         | wire.REVERSED * m.reversed
     )
     header = FRAME_HEADER.pack(
-        *(wire.MAGIC, wire.VERSION, wire.FRAME, len(state), m.epoch, flags, m.scene),
-        *(state.time, m.clock, *m.gravity, m.kinetic, m.potential, m.dissipated, m.drift),
-        *(state.collisions, state.wall_collisions, m.speed, m.reached),
+        *(wire.MAGIC, wire.VERSION, wire.FRAME, len(now), m.epoch, flags, m.scene),
+        *(now.time, m.clock, *m.gravity, m.kinetic, m.potential, m.dissipated, m.drift),
+        *(now.collisions, now.wall_collisions, m.speed, m.reached),
         *(*m.momentum, m.temperature, m.missed, m.overlap),
     )
-    still = (state.fixed | state.resting).astype(np.uint32)
-    counts = state.collision_count & np.uint32(wire.STILL - 1) | still * np.uint32(wire.STILL)
+    still = (now.fixed | now.resting).astype(np.uint32)
+    counts = now.collision_count & np.uint32(wire.STILL - 1) | still * np.uint32(wire.STILL)
     return b"".join(
         (
             header,
-            state.position.astype("<f4").tobytes(),
-            state.velocity.astype("<f4").tobytes(),
+            now.position.astype("<f4").tobytes(),
+            now.velocity.astype("<f4").tobytes(),
             counts.astype("<u4").tobytes(),
         )
     )

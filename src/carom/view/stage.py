@@ -110,7 +110,7 @@ class Stage:
     def _advance(self, look: Look, **goal: float) -> None:
         before = self.sim.time
         try:
-            self.sim.run(**goal, progress=look)  # type: ignore[arg-type]
+            self.sim.run(**goal, progress=look)
         finally:
             self.pressure.add(self.sim.events, self.sim.time - before)
             if self.twin is not None and self.twin.time < self.sim.time:
@@ -247,7 +247,7 @@ class Stage:
         scene = self.sim.scene
         return scene.origin.name if scene is not None and scene.origin is not None else ""
 
-    def _add(self, ball: dict[str, Any]) -> None:
+    def _add(self, **ball: Any) -> None:
         self._refuse_beside_ticks()
         self.sim.add(**ball)
         self._jump()

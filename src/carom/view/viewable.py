@@ -8,18 +8,17 @@ from numpy.typing import NDArray
 from carom.rules import Smooth
 from carom.scene import Scene
 from carom.state import State
+from carom.view.protocol import Moment
 from carom.world import World
 
 
-class Viewable(Protocol):
+class Viewable(Moment, Protocol):
     """The part of `carom.Simulation` that is driven and shown; see there for what it means."""
 
     velocity: Any
     walls: Any
     gravity: Any
     rule: Smooth
-
-    def __len__(self) -> int: ...
 
     def __getitem__(self, index: int) -> Any:
         """One sphere, whose velocity can be assigned."""
@@ -51,18 +50,6 @@ class Viewable(Protocol):
     @property
     def pace(self) -> float:
         """Simulated time per second at speed 1."""
-
-    @property
-    def time(self) -> float:
-        """Simulated time."""
-
-    @property
-    def collisions(self) -> int:
-        """Between spheres."""
-
-    @property
-    def wall_collisions(self) -> int:
-        """With walls."""
 
     @property
     def missed(self) -> int:
@@ -110,14 +97,15 @@ class Viewable(Protocol):
     def reset(self, scene: Scene | None = None) -> None:
         """Go back to the start, or to the start of another scene."""
 
-    def add(self, **sphere: Any) -> Any:
+    @property
+    def add(self) -> Callable[..., Any]:
         """Add a sphere."""
 
     def remove(self, index: int) -> None:
         """Take a sphere away."""
 
     def bookmark(self) -> Any:
-        """This moment, to return to."""
+        """Mark now, to return to."""
 
     def return_to(self, bookmark: Any) -> None:
         """Go back to a bookmark's moment."""

@@ -1,10 +1,9 @@
 """The words of the live view's protocol, defined once for both sides.
 
 `carom.view.protocol` packs and checks with these tables. `javascript` writes them as the module
-``static/wire.js``, which this renews::
+``static/wire.js``, which this renews where it stands::
 
-    python -c "from carom.view import wire; print(wire.javascript(), end='')" \\
-        > src/carom/view/static/wire.js
+    python -c "from carom.view import wire; print(wire.javascript(), end='')" > wire.js
 """
 
 import json

@@ -15,6 +15,15 @@ export const unpack = (packed) => [
  */
 export const SPEED_SCALE = [0x4059d6, 0x4c8fe6, 0x55bccb, 0xb4d98a, 0xffe65a].map(unpack);
 
+/**
+ * From few collisions to many: through purple and orange, for the same reasons, and never to be
+ * taken for speeds.
+ */
+export const COLLISION_SCALE = [0x5b2a86, 0x9c2f7f, 0xdb4f5f, 0xf98e4b, 0xfde7a0].map(unpack);
+
+/** The scales of the colour modes that have one. */
+export const SCALES = { speed: SPEED_SCALE, collisions: COLLISION_SCALE };
+
 /** One per species, as `carom.color.SPECIES`: M. Okabe and K. Ito's colour-blind-safe set. */
 export const SPECIES = [0x4c9be8, 0xe69f00, 0x009e73, 0xd55e00, 0xcc79a7, 0xf0e442, 0x0072b2].map(
   unpack,
@@ -35,22 +44,43 @@ export function saturated(own, saturation) {
 /** @param {Rgb} rgb */
 export const css = (rgb) => `rgb(${rgb.map((part) => Math.round(255 * part)).join(" ")})`;
 
-/** Background, lines and light of the dark and the light page. */
+/**
+ * The dark and the light page. back: behind everything; line, shell: flat and round walls;
+ * surface, floor, wall: a wall's colour and how opaque it is; key, sky, ground: amounts of light;
+ * tint: added to wires; arrow: velocities; shade, contact: darkness of shadows and of spots under spheres; fog: its
+ * thickness at the far end.
+ */
 export const THEMES = {
   dark: {
     back: unpack(0x1a2231),
     line: unpack(0xa9bad6),
     shell: unpack(0x35d97c),
-    sky: /** @type {Rgb} */ ([0.3, 0.33, 0.39]),
-    ground: /** @type {Rgb} */ ([0.07, 0.075, 0.1]),
+    surface: unpack(0x3d4a63),
+    floor: 0.72,
+    wall: 0.16,
+    key: /** @type {Rgb} */ ([1.02, 0.98, 0.92]),
+    sky: /** @type {Rgb} */ ([0.3, 0.34, 0.42]),
+    ground: /** @type {Rgb} */ ([0.09, 0.095, 0.12]),
     tint: /** @type {Rgb} */ ([0.06, 0.06, 0.06]),
+    arrow: unpack(0xf4f1e6),
+    shade: 0.6,
+    contact: 0.75,
+    fog: 0.5,
   },
   light: {
     back: unpack(0xfafbfd),
     line: unpack(0x40506b),
     shell: unpack(0x0d9a4a),
-    sky: /** @type {Rgb} */ ([0.46, 0.48, 0.52]),
-    ground: /** @type {Rgb} */ ([0.2, 0.2, 0.22]),
+    surface: unpack(0xe4e8ef),
+    floor: 0.85,
+    wall: 0.3,
+    key: /** @type {Rgb} */ ([0.95, 0.93, 0.9]),
+    sky: /** @type {Rgb} */ ([0.5, 0.52, 0.56]),
+    ground: /** @type {Rgb} */ ([0.24, 0.24, 0.25]),
     tint: /** @type {Rgb} */ ([-0.35, -0.35, -0.35]),
+    arrow: unpack(0x3b4252),
+    shade: 0.26,
+    contact: 0.42,
+    fog: 0.5,
   },
 };

@@ -33,6 +33,13 @@ export function across(a) {
   return normalize(cross(a, Math.abs(a[2]) < 0.9 * length(a) ? [0, 0, 1] : [1, 0, 0]));
 }
 
+/** A direction after a 4 × 4 matrix. @param {ArrayLike<number>} m @param {Vec3} a @returns {Vec3} */
+export const direction = (m, [x, y, z]) => [
+  m[0] * x + m[4] * y + m[8] * z,
+  m[1] * x + m[5] * y + m[9] * z,
+  m[2] * x + m[6] * y + m[10] * z,
+];
+
 /**
  * World to eye: x to the right, y up, looking along −z.
  * @param {Vec3} eye @param {Vec3} right @param {Vec3} up @param {Vec3} back unit vectors

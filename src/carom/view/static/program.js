@@ -1,4 +1,42 @@
-/** A compiled pair of shaders with its uniforms and attributes by name. */
+/**
+ * A compiled pair of shaders with its uniforms and attributes by name.
+ * @typedef {number | number[] | Float32Array | {int: number} | {list: number[]}} Uniform
+ * @typedef {Record<string, Uniform>} Uniforms
+ */
+
+/** Before every shader. */
+export const HEAD = `#version 300 es
+precision highp float;
+precision highp int;
+`;
+
+/** Shaders by name, each compiled when it is first wanted, in the variants that are wanted. */
+export class Programs {
+  /**
+   * @param {WebGL2RenderingContext} gl
+   * @param {Record<string, [string, string]>} sources vertex and fragment, without HEAD
+   */
+  constructor(gl, sources) {
+    this.gl = gl;
+    this.sources = sources;
+    /** @type {Map<string, Program>} */ this.made = new Map();
+  }
+
+  /** @param {string} name @param {Record<string, boolean>} defines what the shader may ask with #ifdef */
+  get(name, defines = {}) {
+    let head = HEAD;
+    for (const define in defines) if (defines[define]) head += `#define ${define}\n`;
+    const key = name + head;
+    let program = this.made.get(key);
+    if (program === undefined) {
+      const [vertex, fragment] = this.sources[name];
+      program = new Program(this.gl, [head + vertex, head + fragment]);
+      this.made.set(key, program);
+    }
+    return program;
+  }
+}
+
 export class Program {
   /**
    * @param {WebGL2RenderingContext} gl
@@ -43,11 +81,12 @@ export class Program {
   /**
    * Set uniforms by name: numbers, vectors as arrays, 4 × 4 matrices as Float32Array(16),
    * whole numbers as {int: number}, lists of 3-vectors as {list: number[]}.
-   * @param {Record<string, number | number[] | Float32Array | {int: number} | {list: number[]}>} values
+   * @param {Uniforms} values
    */
   set(values) {
     const { gl } = this;
-    for (const [name, value] of Object.entries(values)) {
+    for (const name in values) {
+      const value = values[name];
       if (!this.locations.has(name)) {
         this.locations.set(name, gl.getUniformLocation(this.program, name));
       }

@@ -8,6 +8,9 @@
  * @property {Vec3} normal into the gas
  * @property {Vec3[]} corners four
  * @property {[number, number][]} grid place of each corner in steps of the grid
+ * @property {Vec3} u unit vector along a side, from the first corner to the second
+ * @property {Vec3} v and to the third
+ * @property {[number, number]} sides lengths of both
  * @property {number} fade radius in steps where an endless plane ends, 0 for a wall with edges
  *
  * @typedef {object} Edge
@@ -22,7 +25,7 @@
  * @property {number[]} shells radii of spherical walls
  * @property {{center: Vec3, points: Vec3[], margin: number}} bounds
  */
-import { across, add, cross, dot, scale } from "./matrix.js";
+import { across, add, cross, dot, length, normalize, scale, sub } from "./matrix.js";
 
 const PLANE = 0;
 const SPHERE = 1;
@@ -111,8 +114,8 @@ function box(sides, low, high, faces, edges) {
  */
 function face(center, normal, corners, u, v, step) {
   const lines = (/** @type {number} */ axis) => {
-    const length = Math.abs(corners[3][axis] - corners[0][axis]);
-    return Math.max(1, Math.round(length / step)) / length; // whole squares up to the edges
+    const side = Math.abs(corners[3][axis] - corners[0][axis]);
+    return Math.max(1, Math.round(side / step)) / side; // whole squares up to the edges
   };
   const [perU, perV] = [lines(u), lines(v)];
   const grid = corners.map(
@@ -122,7 +125,14 @@ function face(center, normal, corners, u, v, step) {
         (c[v] - corners[0][v]) * perV,
       ]),
   );
-  return { center, normal, corners, grid, fade: 0 };
+  return { center, normal, corners, grid, ...alongSides(corners), fade: 0 };
+}
+
+/** @param {Vec3[]} corners */
+function alongSides(corners) {
+  const [a, b] = [sub(corners[1], corners[0]), sub(corners[2], corners[0])];
+  const sides = /** @type {[number, number]} */ ([length(a), length(b)]);
+  return { u: normalize(a), v: normalize(b), sides };
 }
 
 /**
@@ -141,7 +151,7 @@ function endlessPlane(plane, low, high, size) {
   const corners = signs.map(([i, j]) => add(center, add(scale(a, i * reach), scale(b, j * reach))));
   const steps = 16;
   const grid = signs.map(([i, j]) => /** @type {[number, number]} */ ([i * steps, j * steps]));
-  return { center, normal, corners, grid, fade: steps };
+  return { center, normal, corners, grid, ...alongSides(corners), fade: steps };
 }
 
 /** @param {number} radius @param {number} low @param {number} high @param {Edge[]} edges */

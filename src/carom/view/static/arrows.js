@@ -1,0 +1,174 @@
+/**
+ * Lit little arrows: a shaft and a head. One for each sphere along its velocity, computed where
+ * the spheres' motion is, or single ones anywhere.
+ *
+ * @typedef {import("./renderer.js").Look} Look
+ */
+import { MOTION, RAY } from "./glsl.js";
+import { LIGHT } from "./light.js";
+import { Programs } from "./program.js";
+
+const AROUND = 10; // corners of the shaft
+const MESH = 9; // the attribute's place, behind those of the spheres
+const TYPICAL_LENGTH = 2.5; // median radii, at the typical speed
+const THICKNESS = 0.13; // of the shaft, median radii; thinner on smaller spheres
+
+/**
+ * mesh: direction round the shaft, then the ring: 0 tail, 1 end of the shaft, 2 the head's rim,
+ * 3 the tip, 4 and 5 the head's back, outer and inner.
+ */
+const ARROW = `
+${RAY}
+layout(location = ${MESH}) in vec3 aMesh;
+uniform mat4 uView;
+out vec3 vPlace, vNormal;
+flat out vec3 vColor;
+
+void arrow(vec3 from, vec3 to, float width) {
+  vec3 line = to - from;
+  float size = length(line);
+  gl_Position = vec4(2, 2, 2, 1);
+  if (size <= 0.0) return;
+  vec3 ahead = line / size;
+  vec3 a = normalize(cross(ahead, abs(ahead.z) < 0.9 ? vec3(0, 0, 1) : vec3(1, 0, 0)));
+  vec3 round = aMesh.x * a + aMesh.y * cross(ahead, a);
+  float head = min(6.5 * width, 0.6 * size), rim = 0.4 * head;
+  width = min(width, 0.5 * rim);
+  int ring = int(aMesh.z);
+  float along = ring == 0 ? 0.0 : ring == 3 ? size : size - head;
+  float out_ = ring == 3 ? 0.0 : ring == 2 || ring == 4 ? rim : width;
+  vec3 normal = ring < 2 ? round : ring < 4 ? normalize(round + 0.4 * ahead) : -ahead;
+  vec4 p = uView * vec4(from + along * ahead + out_ * round, 1);
+  vPlace = p.xyz;
+  vNormal = mat3(uView) * normal;
+  gl_Position = uProjection * p;
+  gl_Position.z = depthAt(length(p.xyz)) * gl_Position.w;
+}
+`;
+
+const SWARM_VERTEX = `
+${MOTION}
+${ARROW}
+layout(location = 6) in float aRadius;
+uniform float uPerSpeed, uThick;
+uniform vec3 uColor;
+
+void main() {
+  vec3 v;
+  float v2;
+  vec3 x = motion(v, v2);
+  float speed = length(v);
+  vColor = uColor;
+  vec3 ahead = speed > 0.0 ? v / speed : vec3(0);
+  vec3 from = x + 0.96 * aRadius * ahead;
+  arrow(from, from + uPerSpeed * v, min(uThick, 0.2 * aRadius));
+}
+`;
+
+const ONE_VERTEX = `
+${ARROW}
+uniform vec3 uFrom, uTo, uColor;
+uniform float uThick;
+
+void main() {
+  vColor = uColor;
+  arrow(uFrom, uTo, uThick);
+}
+`;
+
+const FRAGMENT = `
+${RAY}
+${LIGHT}
+in vec3 vPlace, vNormal;
+flat in vec3 vColor;
+out vec4 color;
+
+void main() {
+  float away = length(vPlace);
+  vec3 toEye = -vPlace / away, n = normalize(vNormal);
+  color = vec4(fogged(lit(vColor, n, vPlace, toEye, 0.0), away), 1);
+}
+`;
+
+/** @returns {{vertices: Float32Array, indices: Uint16Array}} */
+export function arrowMesh(around = AROUND) {
+  const vertices = [];
+  const indices = [];
+  for (let k = 0; k < around; k++) {
+    const angle = (2 * Math.PI * k) / around;
+    for (let ring = 0; ring < 6; ring++) vertices.push(Math.cos(angle), Math.sin(angle), ring);
+    const next = (k + 1) % around;
+    for (const [a, b] of [[0, 1], [5, 4], [2, 3]]) {
+      indices.push(6 * k + a, 6 * next + a, 6 * k + b);
+      if (b !== 3) indices.push(6 * k + b, 6 * next + a, 6 * next + b);
+    }
+  }
+  return { vertices: new Float32Array(vertices), indices: new Uint16Array(indices) };
+}
+
+export class Arrows {
+  /** @param {WebGL2RenderingContext} gl */
+  constructor(gl) {
+    this.gl = gl;
+    this.programs = new Programs(gl, {
+      swarm: [SWARM_VERTEX, FRAGMENT],
+      one: [ONE_VERTEX, FRAGMENT],
+    });
+    const { vertices, indices } = arrowMesh();
+    this.count = indices.length;
+    this.array = gl.createVertexArray();
+    [this.vertices, this.indices] = [gl.createBuffer(), gl.createBuffer()];
+    gl.bindVertexArray(this.array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.vertices);
+    gl.bufferData(gl.ARRAY_BUFFER, vertices, gl.STATIC_DRAW);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.indices);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
+    this.#mesh();
+  }
+
+  #mesh() {
+    const { gl } = this;
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.indices);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.vertices);
+    gl.enableVertexAttribArray(MESH);
+    gl.vertexAttribPointer(MESH, 3, gl.FLOAT, false, 12, 0);
+  }
+
+  /** The velocity of every sphere. @param {Look} look */
+  velocities(look) {
+    const { gl, count } = this;
+    const { pair, about, theme, level } = look;
+    const { n, typical } = pair.traits;
+    const program = this.programs.get("swarm", { SHADOWS: level.shadow > 0 });
+    program.use();
+    program.set(look.common);
+    program.set(look.motion);
+    program.set(look.shadow);
+    // The end of the speed scale is twice the usual speed.
+    const perSpeed = (2 * TYPICAL_LENGTH * typical) / about.full_speed;
+    program.set({ uPerSpeed: perSpeed, uThick: THICKNESS * typical, uColor: theme.arrow });
+    pair.bind("arrows", () => this.#mesh());
+    gl.drawElementsInstanced(gl.TRIANGLES, count, gl.UNSIGNED_SHORT, 0, n);
+  }
+
+  /**
+   * Single arrows.
+   * @param {Look} look @param {import("./renderer.js").ArrowMark[]} list
+   */
+  draw(look, list) {
+    const { gl, count } = this;
+    for (const { side, from, to, color } of list) {
+      if (side !== look.side) continue;
+      const program = this.programs.get("one", { SHADOWS: look.level.shadow > 0 });
+      program.use();
+      program.set(look.common);
+      program.set(look.shadow);
+      // As thick as those of the spheres, yet never hair-thin on the screen.
+      const pixel = (2 * look.camera.tangents.y * look.camera.distance) / look.camera.size.height;
+      const thick = Math.max(1.25 * THICKNESS * look.pair.traits.typical, 1.6 * pixel);
+      program.set({ uFrom: from, uTo: to, uColor: color, uThick: thick });
+      gl.bindVertexArray(this.array);
+      gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_SHORT, 0);
+    }
+  }
+}

@@ -1,0 +1,110 @@
+/** Light and shade: the lamp, and the GLSL that all lit things share. */
+import { across, cross, dot, normalize } from "./matrix.js";
+
+/** @typedef {import("./matrix.js").Vec3} Vec3 */
+
+/**
+ * Where the lamp stands: above the left shoulder of who looks. Where there is a floor it stays in
+ * the room as the eye goes about, so that shadows lie still; elsewhere it comes along.
+ * @param {Vec3} up @param {Vec3} right @param {Vec3} back axes of the eye, or of the room
+ * @returns {Vec3} unit vector towards the lamp
+ */
+export function lampFrom(up, right, back) {
+  const flat = cross(up, right); // into the picture, level
+  const sign = Math.sign(dot(flat, back)) || 1;
+  const part = (/** @type {number} */ k) => 0.8 * up[k] - 0.4 * right[k] + 0.45 * sign * flat[k];
+  return normalize([part(0), part(1), part(2)]);
+}
+
+/**
+ * World to the shadow map: the lamp's view of everything, without perspective, as texture
+ * coordinates and depth from 0 to 1. Column by column.
+ * @param {Vec3} lamp @param {{points: Vec3[], margin: number}} bounds @param {number} more margin
+ * @returns {{matrix: Float32Array, axes: [Vec3, Vec3], size: [number, number, number]}}
+ */
+export function lampMatrix(lamp, { points, margin }, more) {
+  const a = across(lamp);
+  const b = cross(lamp, a);
+  const rows = [a, b, /** @type {Vec3} */ ([-lamp[0], -lamp[1], -lamp[2]])];
+  const matrix = new Float32Array(16);
+  const size = rows.map((row, k) => {
+    const along = points.map((point) => dot(point, row));
+    const low = Math.min(...along) - margin - more;
+    const high = Math.max(...along) + margin + more;
+    for (let j = 0; j < 3; j++) matrix[4 * j + k] = row[j] / (high - low);
+    matrix[12 + k] = -low / (high - low);
+    return high - low;
+  });
+  matrix[15] = 1;
+  return { matrix, axes: [a, b], size: /** @type {[number, number, number]} */ (size) };
+}
+
+/** Twelve places in a disc, evenly (H. Vogel's sunflower). */
+const DISC = Array.from({ length: 12 }, (_, k) => {
+  const [r, angle] = [Math.sqrt((k + 0.5) / 12), 2.39996323 * k];
+  return `vec2(${(r * Math.cos(angle)).toFixed(5)}, ${(r * Math.sin(angle)).toFixed(5)})`;
+});
+
+/** How much of the lamp a place sees; 1 where there is no shadow map. */
+export const SHADOW = `
+#ifdef SHADOWS
+uniform highp sampler2DShadow uShadow;
+uniform mat4 uToLamp;       // from eye space
+uniform vec2 uSoft;         // radius of the half-shadow in the map
+
+float lampSeen(vec3 p) {
+  vec3 at = (uToLamp * vec4(p, 1)).xyz;
+  if (any(lessThan(at, vec3(0))) || any(greaterThan(at, vec3(1)))) return 1.0;
+  const vec2 disc[12] = vec2[](${DISC.join(", ")});
+  float sum = 0.0;
+  for (int k = 0; k < 12; k++) sum += texture(uShadow, vec3(at.xy + uSoft * disc[k], at.z));
+  return sum / 12.0;
+}
+#else
+float lampSeen(vec3 p) { return 1.0; }
+#endif
+`;
+
+/**
+ * One soft lamp, light from the sky, a little back from the ground, a dull shine. Squares and
+ * roots stand for the curve between colours and amounts of light.
+ */
+export const LIGHT = `
+${SHADOW}
+uniform vec3 uLamp, uUp;    // unit vectors towards the lamp and up, in eye space
+uniform vec3 uKey, uSky, uGround, uFog;
+uniform vec3 uFogRange;     // where fog begins, 1/length, how thick it becomes
+
+vec3 fogged(vec3 color, float away) {
+  float share = clamp((away - uFogRange.x) * uFogRange.y, 0.0, 1.0);
+  return mix(color, uFog, uFogRange.z * share);
+}
+
+// p: place, n: normal, toEye: unit vectors in eye space; size: how far the thing shades itself.
+vec3 lit(vec3 base, vec3 n, vec3 p, vec3 toEye, float size) {
+  float facing = dot(n, uLamp);
+  // Light creeps round the edge, where the thing's own shadow would be hard.
+  float seen = mix(1.0, lampSeen(p + 0.12 * size * uLamp), smoothstep(-0.05, 0.2, facing));
+  float round = clamp((facing + 0.35) / 1.35, 0.0, 1.0);
+  float key = round * round * seen;
+  float high = 0.5 + 0.5 * dot(n, uUp);
+  vec3 around = mix(uGround, uSky, high) * (0.55 + 0.45 * seen);
+  vec3 skin = base * base;
+  vec3 light = skin * (around + key * uKey);
+#ifdef PLAIN
+  float shine = max(dot(n, normalize(uLamp + toEye)), 0.0);
+  shine *= shine; shine *= shine; shine *= shine; shine *= shine;
+  light += 0.14 * shine * uKey;
+#else
+  float shine = max(dot(n, normalize(uLamp + toEye)), 0.0);
+  float shine2 = shine * shine, shine4 = shine2 * shine2, shine16 = shine4 * shine4;
+  shine16 *= shine16;
+  float shine64 = shine16 * shine16; shine64 *= shine64;
+  float rim = 1.0 - max(dot(n, toEye), 0.0); rim *= rim * rim;
+  light += (0.10 * shine16 + 0.16 * shine64) * seen * uKey
+    + uSky * rim * high * (0.10 + 0.25 * skin);
+#endif
+  light = light / (1.0 + 0.12 * light);
+  return sqrt(light);
+}
+`;
