@@ -117,7 +117,8 @@ export class Arrows {
     const { vertices, indices } = arrowMesh();
     this.count = indices.length;
     this.array = gl.createVertexArray();
-    [this.vertices, this.indices] = [gl.createBuffer(), gl.createBuffer()];
+    this.vertices = gl.createBuffer();
+    this.indices = gl.createBuffer();
     gl.bindVertexArray(this.array);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.vertices);
     gl.bufferData(gl.ARRAY_BUFFER, vertices, gl.STATIC_DRAW);

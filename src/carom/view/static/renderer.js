@@ -7,7 +7,7 @@
  * @typedef {import("./protocol.js").Keyframe} Keyframe
  * @typedef {import("./camera.js").Camera} Camera
  * @typedef {import("./matrix.js").Vec3} Vec3
- * @typedef {import("./spheres.js").ColorMode} ColorMode
+ * @typedef {import("./protocol.js").ColorMode} ColorMode
  * @typedef {import("./program.js").Uniforms} Uniforms
  *
  * @typedef {object} Options
@@ -65,6 +65,7 @@ import { Shadows } from "./shadows.js";
 import { Spheres } from "./spheres.js";
 import { buildWalls } from "./walls.js";
 
+/** @type {Uniforms} */
 const NO_SHADOWS = {};
 
 export class Renderer {

@@ -10,8 +10,6 @@ import { COLOR, MOTION, RAY, WIRE } from "./glsl.js";
 import { LIGHT } from "./light.js";
 import { Programs } from "./program.js";
 
-/** @typedef {"own" | "energy" | "speed" | "species" | "collisions"} ColorMode */
-
 const MODES = { own: 0, energy: 1, speed: 2, species: 3, collisions: 4 };
 const POINTS_FROM = 2000; // spheres; fewer are drawn as quads, which have no largest size
 const LARGEST_POINT = 96; // pixels

@@ -22,6 +22,7 @@ export function product(a, b) {
 
 export class MatrixStack {
   constructor() {
+    /** @type {Float32Array} */
     // prettier-ignore
     this.top = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
     /** @type {Float32Array[]} */ this.kept = [];
