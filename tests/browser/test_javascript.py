@@ -121,9 +121,7 @@ def test_sketches_on_both_sides(tmp_path):
     finally:
         CURRENT.reset(token)
     recorder.frame = 7
-    message = encode(
-        recorder.picture(), epoch=4, playing=True, failed=True, rate=50, reached=49.5
-    )
+    message = encode(recorder.picture(), epoch=4, playing=True, failed=True, rate=50, reached=49.5)
     (tmp_path / "sketch.bin").write_bytes(message)
     expected = {
         "frame": {
