@@ -39,7 +39,9 @@ def node(name, **environment):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-NAMES = sorted({path.name.split(".")[0] for path in HERE.glob("*.test.mjs")} - {"protocol"})
+NAMES = sorted(
+    {path.name.split(".")[0] for path in HERE.glob("*.test.mjs")} - {"protocol", "sketch"}
+)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -128,11 +128,13 @@ def test_it_runs_prints_and_ends_with_ctrl_c(write):
 
 def test_ctrl_c_ends_a_draw_without_end(write):
     path = write("def draw():\n    print('in')\n    while True: pass\n")
-    with carom_sketch(path, "--no-browser", "--json") as process:
-        with page(json.loads(process.stdout.readline())["address"]):
-            assert process.stderr.readline() == "in\n"
-            begin = time.perf_counter()
-            status, _, err = ended(process)
+    with (
+        carom_sketch(path, "--no-browser", "--json") as process,
+        page(json.loads(process.stdout.readline())["address"]),
+    ):
+        assert process.stderr.readline() == "in\n"
+        begin = time.perf_counter()
+        status, _, err = ended(process)
     assert (status, err) == (0, "")
     assert time.perf_counter() - begin < 5
 
@@ -140,11 +142,13 @@ def test_ctrl_c_ends_a_draw_without_end(write):
 @pytest.mark.parametrize("debug", [[], ["--debug"]])
 def test_an_error_is_one_line_in_the_terminal_and_on_the_page(write, debug):
     path = write(DRAW.replace("sphere(5)", "pop_matrix()"))
-    with carom_sketch(path, "--no-browser", "--json", *debug) as process:
-        with page(json.loads(process.stdout.readline())["address"]) as ws:
-            while not (sentence := note(ws, "failure")):
-                pass
-            status, _, err = ended(process)
+    with (
+        carom_sketch(path, "--no-browser", "--json", *debug) as process,
+        page(json.loads(process.stdout.readline())["address"]) as ws,
+    ):
+        while not (sentence := note(ws, "failure")):
+            pass
+        status, _, err = ended(process)
     assert sentence.startswith("my_ball.py, line 3: pop_matrix() without push_matrix()")
     assert f"carom: {sentence}\n" in err
     assert ("Traceback" in err) == bool(debug)

@@ -1,6 +1,4 @@
 /** Shaders of a sketch's shapes, each as a pair of vertex and fragment program. */
-import { RAY } from "./glsl.js";
-
 const HEAD = `#version 300 es
 precision highp float;
 precision highp int;
@@ -103,7 +101,8 @@ void main() {
 `;
 
 const SPHERE = `
-${RAY}
+uniform mat4 uProjection;
+uniform vec2 uSize;         // of the picture, in pixels
 ${GRID}
 ${LIGHT}
 flat in mat3 vInverse;
@@ -118,7 +117,9 @@ out vec4 color;
 void main() {
   // The far faces of the box cover the same pixels, also where the eye is inside.
   if (gl_FrontFacing == (vTurned > 0.0)) discard;
-  vec3 ray = rayThrough(gl_FragCoord.xy);
+  // The ray through the pixel: its length counts distance from the eye's plane.
+  vec2 tangent = (2.0 * gl_FragCoord.xy / uSize - 1.0) / vec2(uProjection[0][0], uProjection[1][1]);
+  vec3 ray = vec3(tangent, -1);
   vec3 along = vInverse * ray;
   float long2 = dot(along, along);
   float nearest = -dot(vEye, along) / long2;
@@ -152,7 +153,7 @@ void main() {
   color = vec4(coverage * (vStroke.rgb * line + surface * fill * (1.0 - line)), alpha);
   // What hides things is not blended: its coverage goes to the samples of the pixel.
   if (uSolid) color.rgb /= alpha;
-  gl_FragDepth = depthOf(-t);
+  gl_FragDepth = 0.5 + 0.5 * (uProjection[3][2] - uProjection[2][2] * t) / t;
 }
 `;
 
