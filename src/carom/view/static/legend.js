@@ -3,7 +3,7 @@
  * @typedef {import("./protocol.js").ColorMode} ColorMode
  * @typedef {import("./protocol.js").Scene} Scene
  */
-import { SPECIES, SPEED_SCALE, css, saturated, unpack } from "./colors.js";
+import { SCALES, SPECIES, css, saturated, unpack } from "./colors.js";
 import { element } from "./dom.js";
 import { count, short } from "./numbers.js";
 import { roundUp } from "./scales.js";
@@ -36,8 +36,8 @@ function parts(mode, full, scene) {
     const note = "Pale: slow. Strong: full of energy.";
     return [...rows, scale(`${short(full)} +`, "kinetic energy"), element("p", { class: "note" }, note)];
   }
-  if (mode === "speed") return [bar(SPEED_SCALE), scale(`${short(full)} +`, "speed")];
-  if (mode === "collisions") return [bar(SPEED_SCALE), scale(count(full), "collisions so far")];
+  if (mode === "speed") return [bar(SCALES.speed), scale(`${short(full)} +`, "speed")];
+  if (mode === "collisions") return [bar(SCALES.collisions), scale(count(full), "collisions so far")];
   if (mode === "species") return species(scene);
   return [element("p", { class: "note" }, "Each sphere in its own colour.")];
 }

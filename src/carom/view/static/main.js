@@ -34,7 +34,6 @@ import { Hands } from "./tools.js";
  * @typedef {import("./protocol.js").Notes} Notes
  */
 
-const FINEST = 2; // pixels of the picture per pixel of the page
 const SLOWLY = 250; // milliseconds between looks at what changes slowly
 const LABELS = 80; // pixels that the numbers above the halves of the split screen take
 const NARROW = matchMedia("(max-width: 720px)");
@@ -66,8 +65,8 @@ class Page {
     this.inspector = new Inspector(at("inspector"), this.hands);
     this.gallery = new Gallery((name) => send(say.scene(name, {})));
     this.help = new Help();
-    const picture = () => this.renderer.toBlob();
-    this.share = new Share({ token, picture, askSource: () => send(say.source()) });
+    const [picture, askSource] = [() => this.#photo(), () => send(say.source())];
+    this.share = new Share({ token, picture, askSource });
     this.parameters = new Parameters((name, options) => send(say.scene(name, options)));
     this.laws = new SettingsPanel(send, this.camera);
     this.comparison = new Comparison();
@@ -246,9 +245,6 @@ class Page {
   #resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
-    const ratio = Math.min(devicePixelRatio, FINEST);
-    this.canvas.width = Math.round(width * ratio);
-    this.canvas.height = Math.round(height * ratio);
     const covered = !at("panel").hidden;
     const box = (/** @type {string} */ id) => at(id).getBoundingClientRect();
     const split = this.settings?.comparing === true;
@@ -323,6 +319,16 @@ class Page {
     const { color, full, wire } = this.look;
     const options = { color, full, wire, theme: this.theme.name, arrows: this.hands.isOn("arrows") };
     return { sides, camera: this.camera, options, marks, arrows, trails, ghost };
+  }
+
+  /** The picture as a file, in its middle what the page shows beside its panels. */
+  #photo() {
+    const { insets } = this.camera;
+    this.camera.insets = { left: 0, right: 0, top: 0, bottom: 0 };
+    const file = this.renderer.toBlob();
+    this.camera.insets = insets;
+    this.stale = true;
+    return file;
   }
 
   /** What changes slowly. @param {number} now */

@@ -36,6 +36,8 @@ export class Share {
     this.title = title;
     this.link.place.hidden = origin === null;
     this.link.text.value = formatLink(location.origin + location.pathname, this.needs.token, origin);
+    this.preview.width = innerWidth;
+    this.preview.height = innerHeight;
     this.needs.askSource();
     this.dialog.open();
     void this.#draw();

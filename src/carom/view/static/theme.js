@@ -7,29 +7,35 @@ import { recall, remember } from "./store.js";
 const CHOICES = ["auto", "dark", "light"];
 const LIGHT = matchMedia("(prefers-color-scheme: light)");
 
+/** @returns {"dark" | "light"} what the system wants */
+const ask = () => (LIGHT.matches ? "light" : "dark");
+
 export class Theme {
   /** @param {() => void} changed */
   constructor(changed) {
     const kept = /** @type {Choice} */ (recall("theme"));
     /** @type {Choice} */ this.choice = CHOICES.includes(kept) ? kept : "auto";
     this.changed = changed;
-    LIGHT.addEventListener("change", () => this.#apply());
+    this.system = ask();
+    // Asked nowhere else: Chromium tells no change to a list that was read after it.
+    LIGHT.addEventListener("change", () => {
+      this.system = ask();
+      this.#apply();
+    });
     this.#apply();
   }
 
   /** What is shown. @returns {"dark" | "light"} */
   get name() {
-    if (this.choice === "auto") return LIGHT.matches ? "light" : "dark";
-    return this.choice;
+    return this.choice === "auto" ? this.system : this.choice;
   }
 
   /** The next choice: first the one that looks different from now. */
   next() {
     const other = this.name === "dark" ? "light" : "dark";
-    const system = LIGHT.matches ? "light" : "dark";
     // auto → the other → the system's own, fixed → auto
     if (this.choice === "auto") this.choice = other;
-    else this.choice = this.choice === system ? "auto" : system;
+    else this.choice = this.choice === this.system ? "auto" : this.system;
     remember("theme", this.choice);
     this.#apply();
   }
