@@ -30,7 +30,9 @@ def test_a_card_loads_its_scene(show):
     dialog.wait_for(state="visible")
     shown.wait("document.querySelectorAll('#gallery .cards button').length > 0")
     assert dialog.locator(".cards button").count() == len(scenes.names())
-    shown.wait("[...document.querySelectorAll('#gallery img')].every((i) => !i.complete || i.naturalWidth)")
+    shown.wait(
+        "[...document.querySelectorAll('#gallery img')].every((i) => !i.complete || i.naturalWidth)"
+    )
     card = dialog.locator("button[data-name=newton-cradle]")
     assert scenes.describe("newton-cradle") in card.inner_text()
     card.focus()

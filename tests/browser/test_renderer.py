@@ -225,9 +225,7 @@ def test_fog_brings_far_spheres_closer_to_the_background(draw):
     for theme in ("dark", "light"):
         drawn = draw([(-1.5, -4, 0), (1.5, 4, 0)], theme=theme, look=look)
         back = drawn.picture[4, 4]
-        near, far = (
-            np.linalg.norm(at(drawn, (x, y, 0)) - back) for x, y in ((-1.5, -4), (1.5, 4))
-        )
+        near, far = (np.linalg.norm(at(drawn, (x, y, 0)) - back) for x, y in ((-1.5, -4), (1.5, 4)))
         assert far < 0.93 * near
 
 
