@@ -43,7 +43,7 @@ def carnahan_starling(packing_fraction: float) -> float:
     Examples
     --------
     >>> round(carnahan_starling(0.45), 4)
-    9.3854
+    9.3847
     """
     x = _fluid(number("packing_fraction", packing_fraction, at_least=0))
     return (1 + x + x * x - x**3) / (1 - x) ** 3

@@ -121,13 +121,14 @@ class WallPressure:
     def _sums(self, events: NDArray[Any]) -> Floats:
         """Sum |J_n| on each wall."""
         partner = events["j"]
-        hits = events[(partner < 0) & (partner != WOKE)]
-        wall = -1 - hits["j"]
-        wall[hits["j"] <= CAME_TO_REST] += CAME_TO_REST + 1
-        impulse = hits["impulse"]
-        along = np.abs((impulse * self._normals[wall]).sum(axis=1))
+        hits = np.flatnonzero((partner < 0) & (partner != WOKE))
+        wall = -1 - partner[hits]
+        wall[wall >= -1 - CAME_TO_REST] += CAME_TO_REST + 1
+        impulse = events["impulse"][hits]
+        along = np.abs(np.einsum("ij,ij->i", impulse, self._normals[wall]))
         if self._round.any():
-            along = np.where(self._round[wall], np.sqrt((impulse**2).sum(axis=1)), along)
+            lengths = np.sqrt(np.einsum("ij,ij->i", impulse, impulse))
+            along = np.where(self._round[wall], lengths, along)
         return np.bincount(wall, along, len(self._areas)).astype(np.float64)
 
 
