@@ -322,7 +322,8 @@ class Page {
   }
 
   /** The picture as a file, in its middle what the page shows beside its panels. */
-  #photo() {
+  async #photo() {
+    while (this.renderer.picture === null) await new Promise((go) => requestAnimationFrame(go));
     const { insets } = this.camera;
     this.camera.insets = { left: 0, right: 0, top: 0, bottom: 0 };
     const file = this.renderer.toBlob();
