@@ -265,7 +265,7 @@ def test_a_dragged_velocity_reaches_the_engine(show):
     # Now with a part along the view, which a drag does not show: it stays.
     faster = (velocity + 0.4 * np.linalg.norm(velocity) * back).tolist()
     shown.js(f"carom.connection.send(JSON.stringify({{op: 'push', index: 1, velocity: {faster}}}))")
-    shown.wait("Math.abs(carom.hands.handle.velocity[0] - (%r)) < 1e-5" % faster[0])
+    shown.wait(f"Math.abs(carom.hands.handle.velocity[0] - ({faster[0]!r})) < 1e-5")
     time.sleep(0.2)
     x, y = handle(shown)
     mouse.move(x, y)
@@ -328,10 +328,16 @@ def test_what_does_not_fit_changes_nothing(show):
     x, y, _ = where(shown, (0, 0, 0))
     shown.js("carom.hands.next.radius = 4.9")  # touches all three
     said = shown.js(
-        """() => { const was = carom.connection.listener; const said = []; globalThis.said = said;
-             const note = was.note;
-             was.note = (key, value) => { if (key === "refused") said.push(value); note(key, value); };
-             return said; }"""
+        """() => {
+          const { listener } = carom.connection;
+          const { note } = listener;
+          globalThis.said = [];
+          listener.note = (key, value) => {
+            if (key === "refused") globalThis.said.push(value);
+            note(key, value);
+          };
+          return globalThis.said;
+        }"""
     )
     assert said == []
     shown.page.mouse.click(x, y)
@@ -413,3 +419,23 @@ def test_a_step_flashes_both_balls_and_shows_the_impulse(show):
     assert abs(arrow["to"][0] - 1) > 1
     shown.page.keyboard.press("Space")
     shown.wait("carom.hands.overlay().marks.length === 0")
+
+
+def test_beside_ticks_a_click_selects_on_its_side_and_changes_nothing(show):
+    shown = show(still_life())
+    shown.settle()
+    shown.page.keyboard.press("x")
+    shown.wait("carom.hands.sides.length === 2")
+    x, y = shown.js(
+        """(() => {
+          const { viewport } = carom.hands.sides[1];
+          const place = carom.camera.project([-3, 0, 0]);
+          return [place.x + viewport.x, place.y + viewport.y];
+        })()"""
+    )
+    shown.page.mouse.click(x, y)
+    assert shown.js("[carom.hands.selected, carom.hands.side]") == [0, 1]
+    sides = [mark["side"] for mark in shown.js("carom.hands.overlay().marks")]
+    assert sorted(sides) == [0, 1]
+    shown.page.locator(".sphere-title").filter(has_text="in ticks").wait_for(state="visible")
+    assert shown.page.locator(".hand-handle").is_hidden()

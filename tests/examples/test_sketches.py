@@ -1,11 +1,13 @@
 """The five example sketches: three hundred frames each, and the physics in them."""
 
+import re
 from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from carom import sketch
 from carom.sketch.program import Program
 from carom.sketch.recorder import BOX, SHAPE, SPHERE
 
@@ -36,6 +38,26 @@ def energy(program):
 
 def momentum(program):
     return sum(getattr(ball, "mass", 1) * np.array(tuple(ball.velocity)) for ball in balls(program))
+
+
+def test_the_first_sketch_of_the_documents_runs(tmp_path):
+    text = (HERE.parents[1] / "docs" / "sketches.md").read_text(encoding="utf-8")
+    first = re.search(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)[1]
+    assert first.count("\n") - first.count("\n\n") <= 15
+    (tmp_path / "my_ball.py").write_text(first, encoding="utf-8")
+    program = Program(tmp_path / "my_ball.py")
+    program.start()
+    for _ in range(3):
+        picture = program.draw()
+    ((*matrix, fill, stroke, _, kind, _),) = SHAPE.iter_unpack(picture.shapes)
+    assert (kind, matrix[9:], fill) == (SPHERE, [409, 306, -12], 0)
+    assert stroke == 0xFF00A5FF  # orange: bytes red, green, blue, opaque
+
+
+def test_every_word_is_in_the_documents():
+    text = (HERE.parents[1] / "docs" / "sketches.md").read_text(encoding="utf-8")
+    missing = [word for word in sketch.__all__ if not re.search(rf"`[^`\n]*\b{word}\b", text)]
+    assert missing == []
 
 
 def test_all_are_here_and_short():

@@ -19,6 +19,8 @@ def number(where: str, value: Any) -> float:
     InputError
         If it is no number, or not finite.
     """
+    if type(value) is float and value - value == 0.0:
+        return value  # the way of nearly all of them
     if callable(value):
         name = getattr(value, "__name__", "f")
         msg = f"{where} is the function {name}; write {name}() with brackets to have its number"

@@ -6,7 +6,7 @@ import { pathToFileURL } from "node:url";
 const folder = `${pathToFileURL(process.env.CAROM_STATIC).href}/`;
 const { Camera } = await import(`${folder}camera.js`);
 const { placeOf, wrap } = await import(`${folder}interpolation.js`);
-const { pick } = await import(`${folder}pick.js`);
+const { everywhere, pick } = await import(`${folder}pick.js`);
 const { Trail } = await import(`${folder}trail.js`);
 const { Flash, contact } = await import(`${folder}flash.js`);
 const { NewBall, arrowTime, median, reachOf } = await import(`${folder}newball.js`);
@@ -156,14 +156,29 @@ function anyPair(roll, n, size, period, h) {
 function pickSlowly(first, second, t, radius, period, { origin, direction }) {
   let [best, nearest] = [null, Infinity];
   for (let i = 0; i < first.n; i++) {
-    const c = minus(placeOf(first, second, t, i, period).x, origin);
-    const b = c.reduce((sum, part, k) => sum + part * direction[k], 0);
-    const root = b * b - (c.reduce((sum, part) => sum + part * part, 0) - radius[i] ** 2);
-    if (root < 0 || b <= 0) continue;
-    if (b - Math.sqrt(root) < nearest) [best, nearest] = [i, b - Math.sqrt(root)];
+    const { x } = placeOf(first, second, t, i, period);
+    const shifts = (k) => (period[k] > 0 ? [-period[k], 0, period[k]] : [0]);
+    for (const sx of shifts(0)) for (const sy of shifts(1)) for (const sz of shifts(2)) {
+      const image = [x[0] + sx, x[1] + sy, x[2] + sz];
+      // Seen if any of it is in the box.
+      if (image.some((part, k) => period[k] > 0 && Math.abs(part) - radius[i] > 0.5 * period[k])) continue;
+      const c = minus(image, origin);
+      const b = c.reduce((sum, part, k) => sum + part * direction[k], 0);
+      const root = b * b - (c.reduce((sum, part) => sum + part * part, 0) - radius[i] ** 2);
+      if (root < 0 || b <= 0) continue;
+      if (b - Math.sqrt(root) < nearest) [best, nearest] = [i, b - Math.sqrt(root)];
+    }
   }
   return best;
 }
+
+test("a sphere at a corner of a periodic box is seen eight times", () => {
+  assert.deepEqual(everywhere([1, 2, 3], 1, [10, 10, 10]), [[1, 2, 3]]);
+  assert.deepEqual(everywhere([-4.5, 2, 3], 1, [10, 10, 0]), [[-4.5, 2, 3], [5.5, 2, 3]]);
+  const eight = everywhere([-4.5, 4.5, 4.9], 1, [10, 10, 10]);
+  assert.equal(new Set(eight.map(String)).size, 8);
+  assert.ok(eight.every((x) => x.every((part) => Math.abs(part) < 6)));
+});
 
 test("the nearest sphere of all, at any moment, in open and periodic worlds", () => {
   const roll = dice(2);

@@ -12,6 +12,7 @@
  */
 import { unpack } from "./colors.js";
 import { add, length, scale } from "./matrix.js";
+import { everywhere } from "./pick.js";
 
 const COLORS = {
   dark: { selected: 0xffc94d, velocity: 0xffe3a1, impulse: 0xff6f61 },
@@ -49,7 +50,10 @@ function selection(hands, scene, overlay) {
   sides.forEach((_, side) => {
     const sphere = hands.stateOf(selected, side);
     if (sphere === null) return;
-    overlay.marks.push({ side, x: sphere.x, radius: scene.radius[selected], color, strength: 1 });
+    const radius = scene.radius[selected];
+    for (const x of everywhere(sphere.x, radius, /** @type {Vec3} */ (scene.about.period))) {
+      overlay.marks.push({ side, x, radius, color, strength: 1 });
+    }
     if (hands.trailing && hands.trails[side]) {
       overlay.trails.push({ side, points: hands.trails[side].points, color });
     }

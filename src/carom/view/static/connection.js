@@ -5,6 +5,7 @@ import { MAX_CREDITS, SOCKET_PATH, WRONG_TOKEN } from "./wire.js";
 const IN_FLIGHT = 2; // frames the server may send ahead: one on its way, one being drawn
 const PATIENCE = [250, 500, 1000, 2000]; // milliseconds between calls
 const SILENCE = 15_000; // milliseconds without a word while time runs, after which a line is dead
+const BUSY = 100; // milliseconds between two pictures; what goes beyond is no silence
 const KEY = "carom-token";
 
 /**
@@ -47,7 +48,8 @@ export class Connection {
     this.listener = listener;
     this.read = read;
     this.calls = 0; // in a row that failed
-    this.heard = 0; // when something came last
+    this.silence = 0; // milliseconds of drawing since something came last
+    this.drawn = 0; // when the page drew last
     this.moving = false; // frames should be coming
     this.taken = 0; // frames that came since credit was last returned
     /** @type {number | undefined} */ this.timer = undefined;
@@ -71,7 +73,7 @@ export class Connection {
     socket.onmessage = ({ data }) => this.#hear(data);
     socket.onclose = ({ code, reason }) => this.#lost(code, reason);
     this.socket = socket;
-    this.heard = performance.now();
+    this.silence = 0;
   }
 
   /** @param {string} message one of `say` */
@@ -85,15 +87,17 @@ export class Connection {
       this.send(say.credit(Math.min(this.taken, MAX_CREDITS)));
       this.taken = 0;
     }
-    // After a sleep a line may be dead without a word.
-    if (this.moving && performance.now() - this.heard > SILENCE) this.#hangUp();
+    // After a sleep a line may be dead without a word. A page that was busy, hidden or asleep
+    // itself has heard nothing either: that time does not count.
+    const now = performance.now();
+    this.silence += Math.min(now - this.drawn, BUSY);
+    this.drawn = now;
+    if (this.moving && this.silence > SILENCE) this.#hangUp();
   }
 
   /** @param {ArrayBuffer | string} data */
   #hear(data) {
-    const now = performance.now();
-    // A page that was hidden has asked for nothing meanwhile.
-    this.heard = now;
+    this.silence = 0;
     if (this.calls !== -1) this.listener.state("open", "");
     this.calls = -1;
     if (typeof data === "string") {
@@ -132,7 +136,6 @@ export class Connection {
   }
 
   #hurry() {
-    this.heard = performance.now();
     if (this.timer === undefined || document.hidden) return;
     clearTimeout(this.timer);
     this.call();

@@ -138,7 +138,8 @@ export class Inspector {
     const sphere = selected === null ? null : hands.stateOf(selected, hands.side);
     if (selected === null || sphere === null || scene === null) put(this.title, "No sphere selected");
     else {
-      put(this.title, `Sphere ${selected}`);
+      const twin = hands.sides.length > 1 && hands.side === 1;
+      put(this.title, twin ? `Sphere ${selected}, in ticks` : `Sphere ${selected}`);
       this.#read(selected, sphere, scene);
     }
     if (!changed && !atOnce) return;

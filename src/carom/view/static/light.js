@@ -12,7 +12,7 @@ import { across, cross, dot, normalize } from "./matrix.js";
 export function lampFrom(up, right, back) {
   const flat = cross(up, right); // into the picture, level
   const sign = Math.sign(dot(flat, back)) || 1;
-  const part = (/** @type {number} */ k) => 0.8 * up[k] - 0.4 * right[k] + 0.45 * sign * flat[k];
+  const part = (/** @type {number} */ k) => 0.8 * up[k] - 0.3 * right[k] + 0.38 * sign * flat[k];
   return normalize([part(0), part(1), part(2)]);
 }
 
@@ -39,29 +39,59 @@ export function lampMatrix(lamp, { points, margin }, more) {
   return { matrix, axes: [a, b], size: /** @type {[number, number, number]} */ (size) };
 }
 
-/** Twelve places in a disc, evenly (H. Vogel's sunflower). */
-const DISC = Array.from({ length: 12 }, (_, k) => {
-  const [r, angle] = [Math.sqrt((k + 0.5) / 12), 2.39996323 * k];
+const TAPS = 18;
+
+/** Places in a disc, evenly (H. Vogel's sunflower). */
+const DISC = Array.from({ length: TAPS }, (_, k) => {
+  const [r, angle] = [Math.sqrt((k + 0.5) / TAPS), 2.39996323 * k];
   return `vec2(${(r * Math.cos(angle)).toFixed(5)}, ${(r * Math.sin(angle)).toFixed(5)})`;
 });
 
-/** How much of the lamp a place sees; 1 where there is no shadow map. */
+/**
+ * How much of the lamp a place sees; 1 where there is no shadow map. The half-shadow is as wide
+ * as what casts it is far away.
+ */
 export const SHADOW = `
 #ifdef SHADOWS
 uniform highp sampler2DShadow uShadow;
+uniform highp sampler2D uDepth;     // the same map, unfiltered
 uniform mat4 uToLamp;       // from eye space
-uniform vec2 uSoft;         // radius of the half-shadow in the map
+uniform vec2 uSoft;         // radius of the half-shadow in the map, at least
+uniform vec2 uWiden;        // and more per depth between caster and place
+uniform float uShadowed;    // how dark shadows may be: less in a crowd, where all is in shadow
 
 float lampSeen(vec3 p) {
   vec3 at = (uToLamp * vec4(p, 1)).xyz;
   if (any(lessThan(at, vec3(0))) || any(greaterThan(at, vec3(1)))) return 1.0;
-  const vec2 disc[12] = vec2[](${DISC.join(", ")});
+  const vec2 disc[${TAPS}] = vec2[](${DISC.join(", ")});
+  // Turned from pixel to pixel (J. Jimenez's gradient noise), or the places would show as rings.
+  float turn = 6.2831853 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  mat2 turned = mat2(cos(turn), sin(turn), -sin(turn), cos(turn));
+  vec2 search = uSoft + 0.12 * uWiden;
+  float casters = 0.0, between = 0.0;
+  for (int k = 0; k < ${TAPS}; k += 3) {
+    float gap = at.z - texture(uDepth, at.xy + search * (turned * disc[k])).r;
+    if (gap > 0.0) { casters += 1.0; between += gap; }
+  }
+  if (casters == 0.0) return 1.0;
+  vec2 wide = uSoft + uWiden * min(between / casters, 0.3);
   float sum = 0.0;
-  for (int k = 0; k < 12; k++) sum += texture(uShadow, vec3(at.xy + uSoft * disc[k], at.z));
-  return sum / 12.0;
+  for (int k = 0; k < ${TAPS}; k++) sum += texture(uShadow, vec3(at.xy + wide * (turned * disc[k]), at.z));
+  return mix(1.0, sum / ${TAPS}.0, uShadowed);
 }
 #else
 float lampSeen(vec3 p) { return 1.0; }
+#endif
+`;
+
+/** How much light is left in a crowd of spheres; 1 where there is none. */
+export const CROWD = `
+#ifdef CROWD
+uniform mediump sampler3D uCrowd;
+uniform mat4 uToCrowd;      // from eye space
+float lightLeft(vec3 p) { return texture(uCrowd, (uToCrowd * vec4(p, 1)).xyz).r; }
+#else
+float lightLeft(vec3 p) { return 1.0; }
 #endif
 `;
 
@@ -71,6 +101,7 @@ float lampSeen(vec3 p) { return 1.0; }
  */
 export const LIGHT = `
 ${SHADOW}
+${CROWD}
 uniform vec3 uLamp, uUp;    // unit vectors towards the lamp and up, in eye space
 uniform vec3 uKey, uSky, uGround, uFog;
 uniform vec3 uFogRange;     // where fog begins, 1/length, how thick it becomes
@@ -86,23 +117,24 @@ vec3 lit(vec3 base, vec3 n, vec3 p, vec3 toEye, float size) {
   // Light creeps round the edge, where the thing's own shadow would be hard.
   float seen = mix(1.0, lampSeen(p + 0.12 * size * uLamp), smoothstep(-0.05, 0.2, facing));
   float round = clamp((facing + 0.35) / 1.35, 0.0, 1.0);
-  float key = round * round * seen;
+  float left = lightLeft(p + 0.8 * size * n);
+  float key = round * round * seen * (0.25 + 0.75 * left);
   float high = 0.5 + 0.5 * dot(n, uUp);
-  vec3 around = mix(uGround, uSky, high) * (0.55 + 0.45 * seen);
+  vec3 around = mix(uGround, uSky, high) * (0.6 + 0.4 * seen) * left;
   vec3 skin = base * base;
   vec3 light = skin * (around + key * uKey);
 #ifdef PLAIN
   float shine = max(dot(n, normalize(uLamp + toEye)), 0.0);
   shine *= shine; shine *= shine; shine *= shine; shine *= shine;
-  light += 0.14 * shine * uKey;
+  light += 0.14 * shine * left * uKey;
 #else
   float shine = max(dot(n, normalize(uLamp + toEye)), 0.0);
   float shine2 = shine * shine, shine4 = shine2 * shine2, shine16 = shine4 * shine4;
   shine16 *= shine16;
   float shine64 = shine16 * shine16; shine64 *= shine64;
   float rim = 1.0 - max(dot(n, toEye), 0.0); rim *= rim * rim;
-  light += (0.10 * shine16 + 0.16 * shine64) * seen * uKey
-    + uSky * rim * high * (0.10 + 0.25 * skin);
+  light += (0.10 * shine16 + 0.16 * shine64) * seen * left * uKey
+    + uSky * rim * high * seen * left * (0.10 + 0.25 * skin);
 #endif
   light = light / (1.0 + 0.12 * light);
   return sqrt(light);

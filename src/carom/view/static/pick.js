@@ -21,29 +21,49 @@ import { dot, length, sub } from "./matrix.js";
  * @returns {number | null}
  */
 export function pick(first, second, t, radius, period, ray, slack) {
-  const near = candidates(first, second, t, radius, period, ray, slack);
   let best = null;
   let nearest = Infinity; // distance of what is hit
   let least = slack; // of what is missed
-  for (const i of near) {
-    const line = sub(placeOf(first, second, t, i, period).x, ray.origin);
-    const along = dot(line, ray.direction);
-    if (along <= 0) continue;
-    const across2 = dot(line, line) - along * along;
+  for (const i of candidates(first, second, t, radius, period, ray, slack)) {
     const r = radius[i];
-    if (across2 <= r * r) {
-      const entry = along - Math.sqrt(r * r - across2);
-      if (entry >= nearest) continue;
-      nearest = entry;
-      best = i;
-    } else if (nearest === Infinity) {
-      const miss = (Math.sqrt(across2) - r) / along;
-      if (miss > least) continue;
-      least = miss;
-      best = i;
+    for (const x of everywhere(placeOf(first, second, t, i, period).x, r, period)) {
+      const line = sub(x, ray.origin);
+      const along = dot(line, ray.direction);
+      if (along <= 0) continue;
+      const across2 = dot(line, line) - along * along;
+      if (across2 <= r * r) {
+        const entry = along - Math.sqrt(r * r - across2);
+        if (entry >= nearest) continue;
+        nearest = entry;
+        best = i;
+      } else if (nearest === Infinity) {
+        const miss = (Math.sqrt(across2) - r) / along;
+        if (miss > least) continue;
+        least = miss;
+        best = i;
+      }
     }
   }
   return best;
+}
+
+/**
+ * Where a sphere is seen: a sphere that reaches over a periodic border, on both sides of it.
+ * @param {Vec3} x @param {number} radius @param {Vec3} period
+ * @returns {Vec3[]} its place first
+ */
+export function everywhere(x, radius, period) {
+  let places = [x];
+  for (let k = 0; k < 3; k++) {
+    if (!(period[k] > 0) || Math.abs(x[k]) + radius <= 0.5 * period[k]) continue;
+    const beyond = places.map((place) => {
+      const image = /** @type {Vec3} */ ([...place]);
+      image[k] -= Math.sign(x[k]) * period[k];
+      return image;
+    });
+    places = [...places, ...beyond];
+  }
+  return places;
 }
 
 /**
@@ -75,18 +95,19 @@ function candidates(first, second, t, radius, period, ray, slack) {
       const v0 = Math.sqrt(v[k] * v[k] + v[k + 1] * v[k + 1] + v[k + 2] * v[k + 2]);
       const v1 = Math.sqrt(w[k] * w[k] + w[k + 1] * w[k + 1] + w[k + 2] * w[k + 2]);
       reach = far + (v0 + v1 + fall) * h;
-      // Near a periodic border it may be drawn on the other side.
-      if (
-        (px > 0 && Math.abs(a[k]) + reach > 0.5 * px) ||
-        (py > 0 && Math.abs(a[k + 1]) + reach > 0.5 * py) ||
-        (pz > 0 && Math.abs(a[k + 2]) + reach > 0.5 * pz)
-      ) {
-        found.push(i);
-        continue;
-      }
+    }
+    reach += radius[i];
+    // Near a periodic border it may be drawn on the other side.
+    if (
+      (px > 0 && Math.abs(a[k]) + reach > 0.5 * px) ||
+      (py > 0 && Math.abs(a[k + 1]) + reach > 0.5 * py) ||
+      (pz > 0 && Math.abs(a[k + 2]) + reach > 0.5 * pz)
+    ) {
+      found.push(i);
+      continue;
     }
     const along = x * dx + y * dy + z * dz;
-    const most = radius[i] + reach + slack * Math.abs(along + reach);
+    const most = reach + slack * Math.abs(along + reach);
     if (x * x + y * y + z * z - along * along <= most * most) found.push(i);
   }
   return found;

@@ -24,19 +24,24 @@ const ASLEEP = 3000; // ms: the page was hidden; says nothing of the cost
 const PATIENCE = 6; // windows in a row that must be quick before more is tried
 const LONGEST = 96; // windows
 
-/** Software paints with the processor that also computes the motion: never more than this. */
-const SOFTWARE_MOST = 1;
+/** Software paints with the processor that also computes the motion: only few spheres get more. */
+const FEW = 50;
 const MANY = 20_000; // spheres, from which shadows and samples are not tried first
+const SWARM = 50_000; // spheres, whose pixels overlap so much that the cheapest level takes fewer
 
 /** @param {string} renderer the graphics unit's name for itself */
 export const isSoftware = (renderer) =>
   /swiftshader|llvmpipe|softpipe|software|basic render/i.test(renderer);
 
+/** Pixels of the picture per pixel of the page, at most. @param {number} level @param {number} n spheres */
+export const finest = (level, n) => (level === 0 && n > SWARM ? 0.55 : LEVELS[level].finest);
+
 /** Chooses the level from the times between pictures. */
 export class Governor {
   /** @param {boolean} software */
   constructor(software) {
-    this.most = software ? SOFTWARE_MOST : LEVELS.length - 1;
+    this.software = software;
+    this.most = LEVELS.length - 1;
     this.chosen = this.most;
     /** @type {number | null} */ this.forced = null;
     /** @type {number[]} */ this.times = [];
@@ -60,6 +65,7 @@ export class Governor {
 
   /** Another scene has other costs. @param {number} n spheres */
   start(n) {
+    if (this.software) this.most = n > FEW ? 0 : 1;
     this.chosen = Math.min(this.most, n > MANY ? 1 : LEVELS.length - 1);
     this.patience = PATIENCE;
     this.#forget();
@@ -70,7 +76,7 @@ export class Governor {
     if (this.forced !== null || !(time < ASLEEP)) return;
     this.times.push(time);
     // Very slow pictures are not looked at fifteen times.
-    const enough = this.times.length >= 4 && this.times.every((t) => t > 3 * SLOW);
+    const enough = this.times.length >= 4 && this.times.every((t) => t > 2 * SLOW);
     if (this.times.length < WINDOW && !enough) return;
     const middle = this.times.sort((a, b) => a - b)[this.times.length >> 1];
     this.times = [];

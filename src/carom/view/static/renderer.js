@@ -48,18 +48,20 @@
  * @property {import("./buffers.js").Pair} pair
  * @property {Common} common uniforms of every program
  * @property {Uniforms} motion uniforms of the moment
- * @property {Uniforms} shadow uniforms of the shadow map
+ * @property {Uniforms} shadow uniforms of the shadow map and of the crowd
+ * @property {number} crowded how many spheres a ray meets on its way
  *
  * @typedef {Uniforms & {uView: Float32Array, uPort: number[], uLine: number}} Common
  */
 import { Arrows } from "./arrows.js";
 import { Pair, Traits } from "./buffers.js";
 import { THEMES } from "./colors.js";
+import { CrowdLight } from "./crowdlight.js";
 import { Frame } from "./frame.js";
 import { lampFrom } from "./light.js";
 import { direction } from "./matrix.js";
 import { Overlay } from "./overlay.js";
-import { Governor, LEVELS, isSoftware } from "./quality.js";
+import { Governor, LEVELS, finest, isSoftware } from "./quality.js";
 import { Room } from "./room.js";
 import { Shadows } from "./shadows.js";
 import { Spheres } from "./spheres.js";
@@ -85,6 +87,7 @@ export class Renderer {
     this.governor = new Governor(software);
     this.traits = new Traits(gl);
     this.pairs = [new Pair(gl, this.traits), new Pair(gl, this.traits)];
+    this.crowds = [new CrowdLight(gl), new CrowdLight(gl)];
     this.frame = new Frame(gl);
     this.shadows = new Shadows(gl);
     this.room = new Room(gl, this.shadows);
@@ -109,11 +112,17 @@ export class Renderer {
     this.walls = buildWalls(scene.about);
     this.room.set(this.walls);
     this.traits.set(scene);
+    const { points, margin } = this.walls.bounds;
+    const ends = (/** @type {(...values: number[]) => number} */ end, /** @type {number} */ more) =>
+      [0, 1, 2].map((k) => end(...points.map((point) => point[k])) + more);
+    for (const crowd of this.crowds) {
+      crowd.start(scene, ends(Math.min, -margin), ends(Math.max, margin), this.traits.typical);
+    }
   }
 
   /** Draw a picture of the scene that was set. @param {Picture} picture */
   draw(picture) {
-    this.#draw(picture, LEVELS[this.governor.level], devicePixelRatio);
+    this.#draw(picture, this.governor.level, devicePixelRatio);
     const started = performance.now();
     requestAnimationFrame(() => this.governor.took(performance.now() - started));
   }
@@ -122,25 +131,26 @@ export class Renderer {
   toBlob() {
     const { picture } = this;
     if (picture === null) return Promise.reject(new Error("there is no picture yet; draw one first"));
-    this.#draw(picture, LEVELS[LEVELS.length - 1], Math.max(2, devicePixelRatio), true);
+    this.#draw(picture, LEVELS.length - 1, Math.max(2, devicePixelRatio), true);
     return new Promise((done, failed) => {
       this.canvas.toBlob(
         (blob) => (blob === null ? failed(new Error("the browser made no PNG file")) : done(blob)),
         "image/png",
       );
-      this.#draw(picture, LEVELS[this.governor.level], devicePixelRatio);
+      this.#draw(picture, this.governor.level, devicePixelRatio);
     });
   }
 
   /**
-   * @param {Picture} picture @param {import("./quality.js").Level} level
-   * @param {number} finest pixels of the screen per pixel of the page
+   * @param {Picture} picture @param {number} quality index into LEVELS
+   * @param {number} screen its pixels per pixel of the page
    * @param {boolean} [file] is it to be saved?
    */
-  #draw(picture, level, finest, file = false) {
+  #draw(picture, quality, screen, file = false) {
     const { gl, canvas, frame } = this;
     this.picture = picture;
-    const ratio = Math.min(finest, level.finest);
+    const level = LEVELS[quality];
+    const ratio = Math.min(screen, finest(quality, this.traits.n));
     // The canvas may be larger than its viewports; a file holds nothing but them.
     const { clientWidth, clientHeight } = file ? { clientWidth: 0, clientHeight: 0 } : canvas;
     let [width, height] = [clientWidth, clientHeight].map((n) => Math.max(1, Math.round(n * ratio)));
@@ -169,7 +179,10 @@ export class Renderer {
     const look = this.#look(picture, side, level, ratio);
     const { options } = picture;
     if (level.shadow > 0 && !options.wire) {
-      look.shadow = this.shadows.cast(look, this.walls);
+      const { second } = picture.sides[side];
+      const scene = /** @type {Scene} */ (this.scene);
+      const crowd = this.crowds[side].uniforms(second, scene, picture.camera.up, look.eyeToWorld);
+      look.shadow = { ...this.shadows.cast(look, this.walls), ...crowd };
       this.frame.bind();
     }
     const [x, y, width, height] = look.common.uPort;
@@ -248,6 +261,7 @@ export class Renderer {
         uPerPeriod: about.period.map((length) => (length > 0 ? 1 / length : 0)),
       },
       shadow: NO_SHADOWS,
+      crowded: this.crowds[side].cover,
     };
   }
 }

@@ -189,7 +189,7 @@ export class Room {
         uFill: endless || floor ? theme.floor : theme.wall,
         uGridLine: endless ? 0.2 : floor ? 0.12 : 0.06,
         uFade: face.fade,
-        uShade: floor || endless ? theme.shade : 0.6 * theme.shade,
+        uShade: floor || endless ? theme.shade : 0.4 * theme.shade,
       });
       gl.bindVertexArray(this.faces.array);
       gl.drawArrays(gl.TRIANGLE_STRIP, 4 * k, 4);

@@ -11,6 +11,8 @@ import { Programs } from "./program.js";
 import { product } from "./stack.js";
 
 const NEAR_WALL = "3.5"; // radii from the wall at which a spot has faded away
+const LAMP = 0.075; // the lamp's radius over its distance: how fast half-shadows widen
+const SOFTEST = 0.18; // radii: a half-shadow's least radius
 const FLOOR_ONLY_FROM = 3000; // spheres, from which only the floor gets spots
 
 /**
@@ -115,6 +117,10 @@ export class Shadows {
     this.gl = gl;
     this.programs = new Programs(gl, { cast: [CASTER, CAST], spot: [SPOT_VERTEX, SPOT] });
     this.map = gl.createTexture();
+    this.unfiltered = gl.createSampler();
+    gl.samplerParameteri(this.unfiltered, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+    gl.samplerParameteri(this.unfiltered, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+    gl.samplerParameteri(this.unfiltered, gl.TEXTURE_COMPARE_MODE, gl.NONE);
     this.frame = gl.createFramebuffer();
     this.size = 0;
     this.largestPoint = gl.getParameter(gl.ALIASED_POINT_SIZE_RANGE)[1];
@@ -170,11 +176,22 @@ export class Shadows {
     pair.bind(points ? "points" : "quads");
     if (points) gl.drawArrays(gl.POINTS, 0, pair.traits.n);
     else gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, pair.traits.n);
+    for (const unit of [0, 1]) {
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      gl.bindTexture(gl.TEXTURE_2D, this.map);
+      gl.bindSampler(unit, unit === 0 ? null : this.unfiltered);
+    }
     gl.activeTexture(gl.TEXTURE0);
-    gl.bindTexture(gl.TEXTURE_2D, this.map);
-    // As wide as a third of a usual sphere, but never finer than the map.
-    const soft = [0, 1].map((k) => Math.max((0.3 * typical) / size[k], 1.5 / this.size));
-    return { uShadow: { int: 0 }, uToLamp: product(matrix, eyeToWorld), uSoft: soft };
+    // As wide as a part of a usual sphere, but never finer than the map.
+    const soft = [0, 1].map((k) => Math.max((SOFTEST * typical) / size[k], 1.5 / this.size));
+    return {
+      uShadow: { int: 0 },
+      uDepth: { int: 1 },
+      uToLamp: product(matrix, eyeToWorld),
+      uSoft: soft,
+      uShadowed: 1 / (1 + 0.5 * look.crowded),
+      uWiden: [0, 1].map((k) => (LAMP * size[2]) / size[k]),
+    };
   }
 
   /**
@@ -198,7 +215,7 @@ export class Shadows {
       uV: direction(view, face.v),
       uC: add(direction(view, face.corners[0]), [view[12], view[13], view[14]]),
       uSide: face.sides,
-      uDark: theme.contact,
+      uDark: theme.contact / (1 + 0.3 * look.crowded),
       uRound: { int: face.fade > 0 ? 1 : 0 },
     });
     pair.bind("points");

@@ -163,7 +163,18 @@ class SketchPage {
   }
 
   #tick() {
+    try {
+      this.#show();
+    } catch (error) {
+      // Once, not in every picture from now on.
+      this.#banner("connection", `The page cannot draw: ${/** @type {Error} */ (error).message}.`);
+      throw error;
+    }
     requestAnimationFrame(() => this.#tick());
+  }
+
+  /** Draw the newest frame, if there is something new to see. */
+  #show() {
     this.connection.returnCredit();
     const { version } = this.camera;
     if (this.sheet === this.drawn && version === this.drawnView) return;

@@ -1,6 +1,4 @@
 /** Shaders of a sketch's shapes, each as a pair of vertex and fragment program. */
-import { RAY } from "./glsl.js";
-
 const HEAD = `#version 300 es
 precision highp float;
 precision highp int;
@@ -64,7 +62,7 @@ vec3 lit(vec3 base, vec3 n, vec3 toEye) {
   float shine = pow(max(dot(n, normalize(lamp + toEye)), 0.0), 48.0);
   float rim = pow(1.0 - clamp(dot(n, toEye), 0.0, 1.0), 3.0);
   // Squares and roots stand for the curve between colours and amounts of light.
-  vec3 light = base * base * (0.38 + 0.08 * n.y + 0.72 * facing * facing);
+  vec3 light = base * base * (0.36 + 0.06 * n.y + 0.62 * facing * facing);
   return sqrt(light + vec3(0.10 * shine + 0.03 * rim * (0.3 + base)));
 }
 `;
@@ -103,7 +101,8 @@ void main() {
 `;
 
 const SPHERE = `
-${RAY}
+uniform mat4 uProjection;
+uniform vec2 uSize;         // of the picture, in pixels
 ${GRID}
 ${LIGHT}
 flat in mat3 vInverse;
@@ -118,7 +117,9 @@ out vec4 color;
 void main() {
   // The far faces of the box cover the same pixels, also where the eye is inside.
   if (gl_FrontFacing == (vTurned > 0.0)) discard;
-  vec3 ray = rayThrough(gl_FragCoord.xy);
+  // The ray through the pixel: its length counts distance from the eye's plane.
+  vec2 tangent = (2.0 * gl_FragCoord.xy / uSize - 1.0) / vec2(uProjection[0][0], uProjection[1][1]);
+  vec3 ray = vec3(tangent, -1);
   vec3 along = vInverse * ray;
   float long2 = dot(along, along);
   float nearest = -dot(vEye, along) / long2;
@@ -144,7 +145,7 @@ void main() {
   float rim = 1.0 - sqrt(max(1.0 - off1 * off1, 0.0));
   float breath = far || vFill.a > 0.0 ? 0.0 : 0.03 + 0.14 * rim * rim;
   float outline = far ? 0.0 : thin * clamp(0.5 * width + 1.0 - abs(inside - 0.5 * width), 0.0, 1.0);
-  float line = vStroke.a * max(max(breath, strength * mesh), 0.7 * outline * float(vFill.a < 1.0));
+  float line = vStroke.a * max(max(breath, strength * mesh), 0.7 * outline);
   vec3 surface = lit(vFill.rgb, normal, -normalize(ray));
   float fill = far ? 0.0 : vFill.a;
   float alpha = coverage * (line + fill * (1.0 - line));
@@ -152,7 +153,7 @@ void main() {
   color = vec4(coverage * (vStroke.rgb * line + surface * fill * (1.0 - line)), alpha);
   // What hides things is not blended: its coverage goes to the samples of the pixel.
   if (uSolid) color.rgb /= alpha;
-  gl_FragDepth = depthOf(-t);
+  gl_FragDepth = 0.5 + 0.5 * (uProjection[3][2] - uProjection[2][2] * t) / t;
 }
 `;
 
@@ -201,11 +202,13 @@ flat out vec4 vStroke;
 flat out float vLine;
 
 void main() {
-  // A little closer, so that the edges of a box lie on its faces.
-  vec4 a = uView * vec4(aOrigin, 1), b = uView * vec4(aOrigin + aX, 1);
-  a.xyz *= 0.9985; b.xyz *= 0.9985;
   vStroke = aStroke;
   vLine = aWeight * uPixels;
+  vec4 a = uView * vec4(aOrigin, 1), b = uView * vec4(aOrigin + aX, 1);
+  // Closer by one and a half times its width, so that the edges of a box lie on its faces.
+  float closer = 1.0 - min(1.5 * (vLine + 1.0) * 2.0 / (uProjection[1][1] * uSize.y), 0.02);
+  a.xyz *= closer;
+  b.xyz *= closer;
   float near = uProjection[3][2] / (uProjection[2][2] - 1.0);    // > 0
   gl_Position = vec4(2, 2, 2, 1);
   if (a.z > -near && b.z > -near) return;

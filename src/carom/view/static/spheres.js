@@ -14,6 +14,7 @@ const MODES = { own: 0, energy: 1, speed: 2, species: 3, collisions: 4 };
 const POINTS_FROM = 2000; // spheres; fewer are drawn as quads, which have no largest size
 const LARGEST_POINT = 96; // pixels
 const FAR = 14; // pixels of radius, below which all rays to a sphere count as parallel
+const FEW = 300; // spheres whose outlines are always smooth
 const IMAGE = 9; // the attribute's place
 
 const VERTEX = `
@@ -217,6 +218,7 @@ export class Spheres {
       FAR: far && !options.wire,
       FLAT: flat,
       SHADOWS: level.shadow > 0 && !options.wire,
+      CROWD: "uCrowd" in look.shadow && !options.wire,
       PLAIN: level.samples === 0 && level.shadow === 0,
     });
     program.use();
@@ -246,11 +248,12 @@ export class Spheres {
     } else {
       gl.depthMask(true);
       gl.disable(gl.BLEND);
-      program.set({ uCover: level.edges ? WHOLE : HALF });
+      const edges = level.edges || pair.traits.n <= FEW;
+      program.set({ uCover: edges ? WHOLE : HALF });
       draw();
       gl.depthMask(false);
       gl.enable(gl.BLEND);
-      if (level.edges) {
+      if (edges) {
         gl.depthFunc(gl.LESS); // a sphere's own whole pixels are left out early
         program.set({ uCover: EDGES });
         draw();

@@ -122,11 +122,13 @@ export class Hands {
 
   /** @param {number} i */
   #holdVelocity(i) {
-    const side = this.sides.at(0);
-    const stands = side !== undefined && !side.second.playing && side.t === side.second.t;
+    const [side] = this.sides;
+    // Beside ticks nothing is changed: both sides began alike.
+    const alone = this.sides.length === 1;
+    const stands = alone && !side.second.playing && side.t === side.second.t;
     const free = this.scene !== null && Number.isFinite(this.scene.mass[i]);
     const sphere = stands && free && this.mode === "turn" ? this.stateOf(i, 0) : null;
-    const ball = sphere === null || side === undefined ? null : { ...sphere, viewport: side.viewport };
+    const ball = sphere === null ? null : { ...sphere, viewport: side.viewport };
     const { wanted } = this.handle;
     if (this.handle.hold(ball, side?.second.epoch ?? -1)) this.version++;
     if (this.handle.drag !== null || this.handle.wanted !== wanted) this.version++;
@@ -191,7 +193,7 @@ export class Hands {
       if (this.mode === "add") return this.leaveAdding();
       this.mode = "add";
       this.canvas.dataset.mode = "add";
-      if (!this.told) this.toast("Press where the ball shall be, drag its velocity, let go. Escape ends adding.");
+      if (!this.told) this.toast("Press where the ball shall be, drag its velocity, let go. The same button ends adding.");
       this.told = true;
     } else if (this.following) this.camera.follows = false;
     else if (this.selected === null) this.toast("Select a sphere first, then follow it.");
