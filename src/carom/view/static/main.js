@@ -206,7 +206,10 @@ class Page {
       this.gallery.setCatalogue(note.catalogue);
       this.parameters.setCatalogue(note.catalogue);
     }
-    if (note.role !== undefined) document.body.dataset.role = note.role;
+    if (note.role !== undefined) {
+      document.body.dataset.role = note.role;
+      at("watching").hidden = note.role !== "watch";
+    }
     if (note.refused !== undefined) {
       toast(note.refused);
       this.laws.revert();
