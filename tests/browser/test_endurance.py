@@ -21,7 +21,6 @@ def metrics(shown, cdp):
 
 def round_trip(shown, k):
     """Scenes, dialogs, panel, toasts, colours, the split screen: once each."""
-    shown.js(f"carom.parameters.make('{['gas', 'bounce'][k % 2]}')")
     name = ["gas", "bounce"][k % 2]
     shown.js(f"carom.gallery.load('{name}')")
     shown.wait(f"carom.scene.about.origin?.name === '{name}'")
@@ -52,15 +51,15 @@ def test_nothing_piles_up(show):
 def test_a_lost_graphics_context_is_replaced(show):
     shown = show(still_life())
     shown.settle()
-    shown.js("globalThis.before = true")
-    shown.js(
-        """(() => {
-             const losing = carom.renderer.gl.getExtension("WEBGL_lose_context");
-             losing.loseContext();
-             setTimeout(() => losing.restoreContext(), 300);
-           })()"""
-    )
-    shown.wait("globalThis.before !== true && !!globalThis.carom?.timeline.newest")
+    with shown.page.expect_navigation():
+        shown.js(
+            """(() => {
+                 const losing = carom.renderer.gl.getExtension("WEBGL_lose_context");
+                 losing.loseContext();
+                 setTimeout(() => losing.restoreContext(), 300);
+               })()"""
+        )
+    shown.wait("!!globalThis.carom?.timeline.newest")
     shown.wait("carom.drawn.t >= 0")
 
 

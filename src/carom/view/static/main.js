@@ -163,7 +163,8 @@ class Page {
     this.timeline.clear();
     this.twin.clear();
     const { about } = scene;
-    const fresh = before === null || before.about.key !== about.key;
+    // Keys of another program, which took over the port, begin anew; its title differs.
+    const fresh = before?.about.key !== about.key || before.about.title !== about.title;
     // Another number of balls in the same scene is no reason to change its colours.
     const other = fresh && (about.origin === null || before?.about.origin?.name !== about.origin.name);
     if (fresh) this.camera.stand(/** @type {[number, number, number]} */ (about.gravity));
