@@ -173,7 +173,7 @@ def show(
             line = Text("carom shows ").append(found.text, style="bold").append(" at ")
             line.append(view.url, style="cyan underline").append("   (Ctrl-C ends it)")
             report.output().print(line, soft_wrap=True)
-        if view.is_public and not json:
+        if view.is_public:
             report.warn_of_network(view.watch_url)
 
     serve(sim, host=host, port=number, open_browser=not no_browser, on_ready=ready)
