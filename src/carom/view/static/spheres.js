@@ -159,9 +159,9 @@ void main() {
   float half_ = sqrt(max(vRadius * vRadius - off1 * off1, 0.0));
   float size = max(off1, vRadius);
   mat3 toWorld = transpose(mat3(uView));
-  float every = vRadius / pixelAt(along) > 24.0 ? 15.0 : 30.0;
-  float front = wire(toWorld * (off - ray * half_) / size, every, uLine);
-  float back = wire(toWorld * (off + ray * half_) / size, every, 0.8 * uLine);
+  int third = vRadius / pixelAt(along) > 24.0 ? 4 : 2;   // a line every 15 or 30 degrees
+  float front = wire(toWorld * (off - ray * half_) / size, third, uLine);
+  float back = wire(toWorld * (off + ray * half_) / size, third, 0.8 * uLine);
   float outline = clamp(0.5 * uLine + 1.0 - abs(inside - 0.5 * uLine), 0.0, 1.0);
   float coverage = clamp(inside + 0.5, 0.0, 1.0);
   if (coverage <= 0.0) discard;
