@@ -186,7 +186,7 @@ export class Room {
     const { gl } = this;
     const { theme, camera, level, options } = look;
     const walls = /** @type {Walls} */ (this.walls);
-    const program = this.programs.get("face", { SHADOWS: level.shadow > 0 && !options.wire });
+    const program = this.programs.get("face", { SHADOWS: "uShadow" in look.shadow });
     walls.faces.forEach((face, k) => {
       const endless = face.fade > 0;
       if (dot(face.normal, sub(look.eye, face.center)) <= 0 && !endless) return;
