@@ -49,6 +49,7 @@ class Start:
     state: State
     surroundings: Surroundings
     serial: Serials
+    edited: bool
 
 
 @dataclass(frozen=True)
@@ -76,6 +77,7 @@ class Saved:
     surroundings: Surroundings
     world: World
     serial: Serials
+    edited: bool
     account: Account
     built: State
     engine: bytes | None
@@ -149,7 +151,7 @@ class Motion:
 
     def begin(self, state: State, surroundings: Surroundings) -> None:
         """Start afresh from other spheres: views of the old ones are void."""
-        self._begin(Start(state, surroundings, self._new_serials(len(state))))
+        self._begin(Start(state, surroundings, self._new_serials(len(state)), edited=False))
 
     def _begin(self, start: Start) -> None:
         self._engine: Engine | None = None
@@ -157,6 +159,8 @@ class Motion:
         self._built = start.state
         self._start: Start | None = None
         self._serial = start.serial
+        #: Whether spheres were added, removed or assigned to since `begin`.
+        self.edited = start.edited
         self.surroundings, self.world = start.surroundings, start.surroundings.world()
         self._account = Account(mechanics.energy(start.state, self.world))
         self._kept.clear()
@@ -179,7 +183,7 @@ class Motion:
     @property
     def start(self) -> Start:
         """Where the first run began; here and now if there was none."""
-        return self._start or Start(self.state, self.surroundings, self._serial)
+        return self._start or Start(self.state, self.surroundings, self._serial, self.edited)
 
     @property
     def keep_events(self) -> int:
@@ -285,18 +289,22 @@ class Motion:
             fit.check_values(after)
             if name == "velocity" and self._strict:  # not along the inside of a round wall
                 fit.check_walls(after, self.world, wall_names(self.surroundings.walls))
-        self.change(after)
+        self._edit(after)
 
     def extend(self, spheres: Spheres) -> None:
         """Add spheres, if they fit."""
         after = edits.joined(self.state, spheres, self.world.period)
         self._check(after, self.world, self.surroundings)
-        self.change(after, serial=np.append(self._serial, self._new_serials(len(spheres))))
+        self._edit(after, serial=np.append(self._serial, self._new_serials(len(spheres))))
 
     def remove(self, index: int) -> None:
         """Take one sphere away; the others keep their order."""
         after = edits.without(self.state, index)
-        self.change(after, serial=np.delete(self._serial, index))
+        self._edit(after, serial=np.delete(self._serial, index))
+
+    def _edit(self, state: State, serial: Serials | None = None) -> None:
+        self.change(state, serial=serial)
+        self.edited = True
 
     def surround(self, surroundings: Surroundings) -> None:
         """Change walls, rule or gravity; whatever was resting wakes."""
@@ -327,7 +335,7 @@ class Motion:
             built, bits = self._built, self._engine.checkpoint()
         elif self._engine is not None:
             account = self._closed(mechanics.energy(built, self.world))
-        around = self.surroundings, self.world, self._serial
+        around = self.surroundings, self.world, self._serial, self.edited
         return Saved(self, self._start, *around, account, built, bits)
 
     def return_to(self, saved: Saved) -> None:
@@ -346,6 +354,7 @@ class Motion:
         self._snapshot = saved.built if engine is None else None
         self._start, self._serial, self._account = saved.start, saved.serial, saved.account
         self.surroundings, self.world = saved.surroundings, saved.world
+        self.edited = saved.edited
         self._kept.clear()
 
     def advance(

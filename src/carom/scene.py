@@ -188,10 +188,13 @@ class Origin:
         As on the command line.
     options : dict
         All options by their names in Python, those left out with their defaults.
+    made : Scene, optional
+        As the library made it, to see what was replaced since. Not part of equality.
     """
 
     name: str
     options: dict[str, Any]
+    made: "Scene | None" = field(default=None, repr=False, compare=False)
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ import numpy as np
 
 from carom.checks import number
 from carom.errors import InputError
+from carom.listing import Listing
 from carom.methods import TICKS_PER_SECOND, Method, engine_maker
 from carom.motion import Motion, Saved, Surroundings
 from carom.rules import Smooth
@@ -232,6 +233,55 @@ class Simulation(Running):
             raise InputError(msg)
         self._motion.return_to(bookmark.saved)
         self._scene = bookmark.scene
+
+    def as_python(self) -> str:
+        """Write it as a Python program that starts from here, with the same bits.
+
+        A scene of the library whose spheres were neither added, removed nor assigned to since
+        is written by its name, at its start, with the walls, rule and gravity of now. All
+        others are written as they are now, at time 0.
+
+        Raises
+        ------
+        InputError
+            If there are more than 2000 spheres to write, or they overlap, as ticks let them.
+
+        Examples
+        --------
+        >>> import carom
+        >>> sim = carom.Simulation(carom.scenes.gas(n=200, seed=3))
+        >>> sim.run(until=1)
+        >>> sim.gravity = (0, 0, -1)
+        >>> print(sim.as_python(), end="")
+        import carom
+        <BLANKLINE>
+        sim = carom.Simulation(carom.scenes.gas(n=200, seed=3), gravity=(0, 0, -1))
+        sim.show()
+        """
+        return self._listing().python()
+
+    def as_toml(self) -> str:
+        """Write it as a scene file: the same start as `as_python`, with the same bits.
+
+        Raises
+        ------
+        InputError
+            If there are more than 20000 spheres to write, or they overlap, as ticks let them.
+        """
+        return self._listing().toml()
+
+    def as_command(self) -> str:
+        """Write the command that shows it; a scene file is named where options cannot say it.
+
+        Raises
+        ------
+        InputError
+            If spheres overlap, as ticks let them.
+        """
+        return self._listing().command()
+
+    def _listing(self) -> Listing:
+        return Listing.of(self._scene, self._motion, self._method, self._tick)
 
     def show(self, *, host: str = "127.0.0.1", port: int = 0, open_browser: bool = True) -> None:
         """Show it live in the browser until Ctrl-C.

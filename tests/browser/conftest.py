@@ -72,7 +72,8 @@ def show(chromium):
             view = stack.enter_context(LiveView(sim))
             context = chromium.new_context(
                 viewport={"width": width, "height": height},
-                **{"color_scheme": "dark", **options},
+                # Without gliding a picture is where it goes at once.
+                **{"color_scheme": "dark", "reduced_motion": "reduce", **options},
             )
             stack.callback(context.close)
             page = context.new_page()

@@ -10,6 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from carom import sketch
+from carom.sketch.message import encode
+from carom.sketch.recorder import CURRENT, Recorder
 from carom.state import State
 from carom.view.protocol import Meters, decode_command, encode_frame, encode_scene
 from carom.view.wire import OPERATIONS, VERSION
@@ -36,7 +39,12 @@ def node(name, **environment):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("name", ["interpolation", "timeline", "page", "stack", "quality", "crowd"])
+NAMES = sorted(
+    {path.name.split(".")[0] for path in HERE.glob("*.test.mjs")} - {"protocol", "sketch"}
+)
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_modules(name):
     node(f"{name}.test.mjs")
 
@@ -91,3 +99,47 @@ def test_protocol_on_both_sides(tmp_path):
     assert values["add"] == {
         "position": (1, 2, 3), "velocity": (0, 0, 1), "radius": 0.5, "mass": 2, "color": 0xFF0000
     }  # fmt: skip
+
+
+def test_sketches_on_both_sides(tmp_path):
+    recorder = Recorder()
+    token = CURRENT.set(recorder)
+    try:
+        sketch.size(800, 600)
+        sketch.background(255, 0, 51)
+        sketch.translate(400, 300, -300)
+        sketch.no_fill()
+        sketch.stroke(1, 2, 3, 4)
+        sketch.sphere(50)
+        sketch.translate(0, 0, 300)
+        sketch.fill("red")
+        sketch.sphere_detail(36)
+        sketch.sphere(20)
+        sketch.no_fill()
+        sketch.translate(0, 0, 100)
+        sketch.box(40)
+        sketch.stroke_weight(2.5)
+        sketch.line(0, 0, 100, 8, 16, 100)
+    finally:
+        CURRENT.reset(token)
+    recorder.frame = 7
+    message = encode(recorder.picture(), epoch=4, playing=True, failed=True, rate=50, reached=49.5)
+    (tmp_path / "sketch.bin").write_bytes(message)
+    expected = {
+        "frame": {
+            "n": 4, "epoch": 4, "playing": True, "failed": True, "width": 800, "height": 600,
+            "background": [1, 0, 0.2], "frame": 7, "rate": 50, "reached": 49.5,
+        },
+        "shapes": [
+            {"matrix": [50, 0, 0, 0, 50, 0, 0, 0, 50, 400, 300, -300],
+             "fill": 0, "stroke": 0x04030201, "weight": 1, "kind": 0, "detail": 24},
+            {"matrix": [20, 0, 0, 0, 20, 0, 0, 0, 20, 400, 300, 0],
+             "fill": 0xFF0000FF, "stroke": 0x04030201, "weight": 1, "kind": 0, "detail": 36},
+            {"matrix": [40, 0, 0, 0, 40, 0, 0, 0, 40, 400, 300, 100],
+             "fill": 0, "stroke": 0x04030201, "weight": 1, "kind": 1, "detail": 36},
+            {"matrix": [8, 16, 0, 0, 0, 0, 0, 0, 0, 400, 300, 200],
+             "fill": 0, "stroke": 0x04030201, "weight": 2.5, "kind": 2, "detail": 36},
+        ],
+    }  # fmt: skip
+    (tmp_path / "sketch.json").write_text(json.dumps(expected))
+    node("sketch.test.mjs", CAROM_EXCHANGE=str(tmp_path))

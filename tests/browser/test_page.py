@@ -203,10 +203,10 @@ def test_energy_colours_are_the_papers(show):
     )
     shown = show(carom.Simulation(scene))
     shown.settle()
-    assert shown.page.get_by_label("Energy").is_checked()
-    assert shown.page.get_by_label("Wire").is_checked()
+    assert shown.page.get_by_role("radio", name="Energy").is_checked()
+    assert shown.page.get_by_role("radio", name="Wire").is_checked()
     assert "500" in shown.text("legend")
-    shown.page.get_by_label("Solid").check(force=True)
+    shown.page.get_by_role("radio", name="Solid").check(force=True)
     time.sleep(0.2)
     rest, fast = (
         around(shown, *where(shown, place)[:2]).mean(axis=0) for place in shown.sim.position
@@ -214,11 +214,11 @@ def test_energy_colours_are_the_papers(show):
     saturation = [1 - color.min() / color.max() for color in (rest, fast)]
     assert saturation[0] < 0.1
     assert 0.35 < saturation[1] < 0.65
-    shown.page.get_by_label("Own").check(force=True)
+    shown.page.get_by_role("radio", name="Own").check(force=True)
     time.sleep(0.2)
     own = around(shown, *where(shown, shown.sim.position[0])[:2]).mean(axis=0)
     assert hue(own) == pytest.approx(hue(rgb(RED)), abs=0.25)
-    shown.page.get_by_label("Speed").first.check(force=True)
+    shown.page.get_by_role("radio", name="Speed").check(force=True)
     assert "speed" in shown.text("legend")
 
 
@@ -252,7 +252,7 @@ def test_phone(show):
     page = shown.page
     shown.wait("carom.timeline.newest?.wallCollisions > 0")
     assert page.locator("#panel").is_hidden()
-    page.get_by_role("button", name="Numbers and colours").tap()
+    page.get_by_role("button", name="Numbers and settings").tap()
     assert page.locator("#panel").is_visible()
     width = shown.js("document.documentElement.scrollWidth")
     assert width == 390

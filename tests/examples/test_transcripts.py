@@ -30,7 +30,12 @@ def test_python():
 
 
 @pytest.mark.parametrize(
-    "body", [b for b in blocks("command-line.md", "console") if "carom show" not in b]
+    "body",
+    [
+        b
+        for b in blocks("command-line.md", "console")
+        if "carom show" not in b and "carom sketch" not in b
+    ],
 )
 def test_command_line(capsys, body):
     command, expected = body.split("\n", 1)

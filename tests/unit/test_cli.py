@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
+from types import SimpleNamespace
 
 import pytest
 
@@ -213,20 +214,30 @@ class TestShow:
     def test_hands_the_scene_to_the_view(self, cli, monkeypatch):
         calls = []
 
-        def serve(sim, *, port, open_browser, on_ready):
-            calls.append((sim.scene.title, len(sim), sim.method, port, open_browser))
-            on_ready("http://127.0.0.1:1/")
+        def serve(sim, *, host, port, open_browser, on_ready):
+            calls.append((sim.scene.title, len(sim), sim.method, port, open_browser, host))
+            public = host != "127.0.0.1"
+            on_ready(
+                SimpleNamespace(url="http://h:1/#c", watch_url="http://h:1/#w", is_public=public)
+            )
 
         monkeypatch.setattr("carom.cli.commands.serve", serve)
-        status, out, _ = cli("show --no-browser --port 1234")
-        assert (status, calls.pop()[2:]) == (0, ("exact", 1234, False))
-        assert "carom shows phase-4 at http://127.0.0.1:1/" in out
+        status, out, err = cli("show --no-browser --port 1234")
+        assert (status, err, calls.pop()[2:]) == (0, "", ("exact", 1234, False, "127.0.0.1"))
+        assert "carom shows phase-4 at http://h:1/#c" in out
         cli("show phase-3 --n 5 --method tick")
-        assert calls.pop() == ("Phase 3: many balls", 5, "tick", 0, True)
+        assert calls.pop()[:5] == ("Phase 3: many balls", 5, "tick", 0, True)
         cli("show --n 5")
         assert calls.pop()[1] == 5
-        assert cli("show --quiet")[1] == "http://127.0.0.1:1/\n"
-        assert json.loads(cli("show --json")[1])["address"] == "http://127.0.0.1:1/"
+        assert cli("show --quiet")[1] == "http://h:1/#c\n"
+        assert json.loads(cli("show --json")[1]) == {
+            "address": "http://h:1/#c", "scene": "phase-4", "n": 12
+        }  # fmt: skip
+        status, out, err = cli("show --host 0.0.0.0 --json")
+        assert json.loads(out)["watch_address"] == "http://h:1/#w"
+        assert "Warning" in err
+        assert "nothing is encrypted" in err
+        assert "http://h:1/#w" in err
 
     def test_ctrl_c_ends_it_cleanly(self):
         command = [sys.executable, "-m", "carom", "show", "two-balls", "--no-browser", "--quiet"]

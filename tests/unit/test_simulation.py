@@ -1,6 +1,7 @@
 """Simulation: placing, running, stopping."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -313,12 +314,16 @@ class TestManners:
 
         calls = []
 
-        def serve(sim, *, port, open_browser, on_ready):
-            calls.append((sim, port, open_browser))
-            on_ready("http://127.0.0.1:1234/")
+        def serve(sim, *, host, port, open_browser, on_ready):
+            calls.append((sim, host, port, open_browser))
+            public = host != "127.0.0.1"
+            on_ready(SimpleNamespace(url="http://h/#c", watch_url="http://h/#w", is_public=public))
 
         monkeypatch.setattr(carom.view, "serve", serve)
         sim = gas()
         sim.show(port=1234, open_browser=False)
-        assert calls == [(sim, 1234, False)]
-        assert capsys.readouterr().err == "carom is at http://127.0.0.1:1234/ (Ctrl-C ends it)\n"
+        assert calls == [(sim, "127.0.0.1", 1234, False)]
+        assert capsys.readouterr().err == "carom is at http://h/#c (Ctrl-C ends it)\n"
+        sim.show(host="0.0.0.0")
+        assert calls[1][1:] == ("0.0.0.0", 0, True)
+        assert capsys.readouterr().err.endswith("to watch only: http://h/#w\n")

@@ -2,13 +2,13 @@
 
 import ipaddress
 import json
+import re
 import signal
 import socket
 import subprocess
 import sys
 import time
 from contextlib import ExitStack, contextmanager
-from importlib import resources
 
 import pytest
 from websockets.client import ClientProtocol
@@ -21,7 +21,7 @@ import carom
 from carom import scenes
 from carom.errors import FileError, InputError
 from carom.view import LiveView, network, serve
-from carom.view.files import TABLE, load
+from carom.view.files import SKETCH, VIEW, load
 from carom.view.protocol import Command
 from carom.view.server import MAX_CLIENTS
 from carom.view.wire import VERSION
@@ -98,7 +98,7 @@ def request(view, path="/", host=None, method="GET", extra=""):
 
 
 def test_every_file_of_the_table_is_served(view):
-    for path, file in load().items():
+    for path, file in load(VIEW).items():
         status, headers, body = request(view, path)
         assert (status, body) == (200, file.content)
         assert headers["Content-Type"] == file.content_type
@@ -109,10 +109,20 @@ def test_every_file_of_the_table_is_served(view):
         assert "unsafe" not in policy
 
 
-def test_the_table_names_every_module_of_the_page():
-    folder = resources.files("carom.view") / "static"
-    there = {entry.name for entry in folder.iterdir()} - {"package.json"}  # for tools only
-    assert there == {name for name, _ in TABLE.values()}
+def test_the_pages_have_what_they_ask_for():
+    """Every module, style and picture that a page or a module names."""
+    for page in (VIEW, SKETCH):
+        files = load(page)
+        for address, file in files.items():
+            text = file.content.decode("utf-8", "replace")
+            if address == "/":
+                named = re.findall(r'(?:href|src)="(/[^"]*)"', text)
+            elif address.endswith(".js"):
+                named = ["/" + name for name in re.findall(r'from "\./([^"]*)"', text)]
+            else:
+                named = []
+            assert set(named) <= files.keys(), address
+    assert json.loads(load(VIEW)["/gallery.json"].content) == scenes.names()
 
 
 def test_scene_comes_first_then_frames_as_credit_allows(view):

@@ -1,4 +1,4 @@
-"""The command line: ``carom scenes``, ``show``, ``run``, ``compare``."""
+"""The command line: ``carom scenes``, ``show``, ``run``, ``compare``, ``sketch``."""
 
 from carom.cli.commands import main
 

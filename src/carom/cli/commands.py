@@ -16,6 +16,7 @@ from carom.cli import report
 from carom.cli.comparing import compare as compare_both
 from carom.cli.comparing import side_by_side
 from carom.cli.running import as_data, execute, goal, summary
+from carom.cli.sketching import sketch
 from carom.cli.source import parsed, source, whole
 from carom.cli.story import TOLD, story
 from carom.errors import InputError, RunError
@@ -172,7 +173,7 @@ def show(
             line = Text("carom shows ").append(found.text, style="bold").append(" at ")
             line.append(view.url, style="cyan underline").append("   (Ctrl-C ends it)")
             report.output().print(line, soft_wrap=True)
-        if view.is_public and not json:
+        if view.is_public:
             report.warn_of_network(view.watch_url)
 
     serve(sim, host=host, port=number, open_browser=not no_browser, on_ready=ready)
@@ -246,6 +247,9 @@ def compare(
         report.output().print(side_by_side(found, data))
 
 
+app.command()(sketch)
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and leave the program with its exit status.
 
@@ -259,7 +263,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _status(words: list[str], debug: bool) -> int:
     try:
-        status = int(app(words, prog_name="carom", standalone_mode=False) or 0)
+        status = int(app(words, prog_name="carom", standalone_mode=False, obj=debug) or 0)
         if "--help" in words and len(words) > 2 and words[1] in scenes.names():
             _print_options(words[1], quiet=True)
         return status

@@ -168,7 +168,7 @@ def scene(function: Callable[P, Scene]) -> Callable[P, Scene]:
             bound.arguments[key] = given[key].checked(value)
         bound.apply_defaults()
         made = function(*bound.args, **bound.kwargs)
-        return replace(made, origin=Origin(name, dict(bound.arguments)))
+        return replace(made, origin=Origin(name, dict(bound.arguments), made))
 
     _SCENES[name] = _Entry(doc.split("\n")[0].rstrip("."), options, make)
     return make

@@ -1,54 +1,24 @@
-"""The page's files: a fixed table read once, so no request ever names a path on the disk."""
+"""The pages' files: tables read once, so no request ever names a path on the disk."""
 
+import json
 from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
+from importlib import resources
+from importlib.resources.abc import Traversable
 
-HTML, CSS, JS, SVG = "text/html", "text/css", "text/javascript", "image/svg+xml"
-
-#: Address of each file, its name in `static/`, its type.
-TABLE = {
-    "/": ("index.html", HTML),
-    "/style.css": ("style.css", CSS),
-    "/icon.svg": ("icon.svg", SVG),
-    **{
-        f"/{name}.js": (f"{name}.js", JS)
-        for name in (
-            "main",
-            "arrows",
-            "buffers",
-            "camera",
-            "colors",
-            "connection",
-            "controls",
-            "crowd",
-            "crowdlight",
-            "frame",
-            "gestures",
-            "glsl",
-            "images",
-            "interpolation",
-            "legend",
-            "light",
-            "matrix",
-            "numbers",
-            "overlay",
-            "program",
-            "protocol",
-            "quality",
-            "readout",
-            "renderer",
-            "room",
-            "shadows",
-            "spheres",
-            "stack",
-            "timeline",
-            "walls",
-            "wire",
-        )
-    },
+FOLDER = resources.files("carom.view") / "static"
+TYPES = {
+    "html": "text/html; charset=utf-8",
+    "css": "text/css; charset=utf-8",
+    "js": "text/javascript; charset=utf-8",
+    "svg": "image/svg+xml; charset=utf-8",
+    "webp": "image/webp",
+    "json": "application/json; charset=utf-8",
 }
+VIEW, SKETCH = "index.html", "sketch.html"
+#: Where the page finds which scenes have a picture.
+GALLERY = "/gallery.json"
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,13 +30,22 @@ class StaticFile:
 
 
 @cache
-def load() -> dict[str, StaticFile]:
-    """All files by address."""
-    folder = files("carom.view") / "static"
-    return {
-        address: StaticFile((folder / name).read_bytes(), f"{kind}; charset=utf-8")
-        for address, (name, kind) in TABLE.items()
-    }
+def load(page: str) -> dict[str, StaticFile]:
+    """All files of a page by address: the page itself at ``/``, scripts, styles and pictures."""
+    files = {"/": _read(FOLDER / page)}
+    for file in FOLDER.iterdir():
+        if file.name.endswith((".js", ".css", ".svg")):
+            files[f"/{file.name}"] = _read(file)
+    if page == VIEW:
+        pictures = sorted((FOLDER / "gallery").iterdir(), key=lambda picture: picture.name)
+        files |= {f"/gallery/{picture.name}": _read(picture) for picture in pictures}
+        names = json.dumps([picture.name.removesuffix(".webp") for picture in pictures])
+        files[GALLERY] = StaticFile(names.encode(), TYPES["json"])
+    return files
+
+
+def _read(file: Traversable) -> StaticFile:
+    return StaticFile(file.read_bytes(), TYPES[file.name.rpartition(".")[2]])
 
 
 def security_headers(hosts: Collection[str]) -> dict[str, str]:

@@ -10,7 +10,7 @@ from carom.errors import InputError
 from carom.view import network, tokens
 from carom.view.catalogue import catalogue
 from carom.view.driver import Driver
-from carom.view.files import load
+from carom.view.files import VIEW, load
 from carom.view.protocol import encode_text
 from carom.view.server import Server
 from carom.view.viewable import Viewable
@@ -70,7 +70,7 @@ class LiveView:
             self._socket,
             self._names,
             {token: "control", watch: "watch"},
-            load(),
+            load(VIEW),
             order=lambda command, reply: self._driver.order(command, reply),
             poke=lambda: self._driver.poke(),
             welcome=(encode_text("catalogue", catalogue()),),

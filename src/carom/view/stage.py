@@ -8,6 +8,7 @@ from typing import Any
 
 from carom import mechanics, scenes
 from carom.errors import InputError, RunError
+from carom.state import CAME_TO_REST
 from carom.view.history import History, Mark
 from carom.view.pressure import WallPressure
 from carom.view.protocol import Command
@@ -167,16 +168,22 @@ class Stage:
                 raise RunError(msg)
 
         self._advance(search, **{self._goal: 1})
-        event = self.sim.events[-1]
         self._serial += 1
-        self.event = {
-            "t": float(event["time"]),
-            "i": int(event["i"]),
-            "j": int(event["j"]),
-            "impulse": event["impulse"].tolist(),
-            "serial": self._serial,
-        }
+        self.event = self._last_collision()
         self._at_collision = True
+
+    def _last_collision(self) -> dict[str, Any] | None:
+        """What the last run ended with; coming to rest and waking are no collisions."""
+        for event in self.sim.events[::-1]:
+            if event["j"] > CAME_TO_REST:
+                return {
+                    "t": float(event["time"]),
+                    "i": int(event["i"]),
+                    "j": int(event["j"]),
+                    "impulse": event["impulse"].tolist(),
+                    "serial": self._serial,
+                }
+        return None
 
     def _back(self) -> None:
         """Return to the moment right after the collision before this one, or to the start."""

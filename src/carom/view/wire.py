@@ -18,7 +18,7 @@ MAGIC = b"CARO"
 VERSION = 2
 SOCKET_PATH = "/live"
 #: Kinds of binary messages.
-FRAME, SCENE = 1, 2
+FRAME, SCENE, SKETCH = 1, 2, 3
 #: Bits of a frame's flags.
 PLAYING, FAILED, TWIN, REVERSED = 1, 2, 4, 8
 #: Bit of a sphere's count: gravity does not act on it (fixed or resting).
@@ -193,7 +193,7 @@ def javascript() -> str:
         "MAGIC": int.from_bytes(MAGIC, "little"),
         "VERSION": VERSION,
         "SOCKET_PATH": SOCKET_PATH,
-        **{"FRAME": FRAME, "SCENE": SCENE},
+        **{"FRAME": FRAME, "SCENE": SCENE, "SKETCH": SKETCH},
         **{"PLAYING": PLAYING, "FAILED": FAILED, "TWIN": TWIN, "REVERSED": REVERSED},
         "STILL": STILL,
         **{"MAX_CREDITS": MAX_CREDITS, "SLOWEST": SLOWEST, "FASTEST": int(FASTEST)},

@@ -5,6 +5,7 @@ import { MAX_CREDITS, SOCKET_PATH, WRONG_TOKEN } from "./wire.js";
 const IN_FLIGHT = 2; // frames the server may send ahead: one on its way, one being drawn
 const PATIENCE = [250, 500, 1000, 2000]; // milliseconds between calls
 const SILENCE = 15_000; // milliseconds without a word while time runs, after which a line is dead
+const BUSY = 100; // milliseconds between two pictures; what goes beyond is no silence
 const KEY = "carom-token";
 
 /**
@@ -21,21 +22,34 @@ export function takeToken() {
 }
 
 /**
+ * @template [F=import("./protocol.js").Keyframe]
  * @typedef {object} Listener
  * @property {(scene: import("./protocol.js").Scene) => void} scene
- * @property {(frame: import("./protocol.js").Keyframe) => void} frame
+ * @property {(frame: F) => void} frame
  * @property {<K extends keyof Notes>(key: K, value: Notes[K]) => void} note
  * @property {(state: "open" | "waiting" | "refused", sentence: string) => void} state
  * @typedef {import("./protocol.js").Notes} Notes
  */
 
+/**
+ * @template F
+ * @typedef {{kind: "scene", scene: import("./protocol.js").Scene}
+ *   | {kind: "frame", frame: F, moving?: boolean}} Message
+ */
+
+/** @template {{playing: boolean, twin?: boolean}} [F=import("./protocol.js").Keyframe] */
 export class Connection {
-  /** @param {string} token @param {Listener} listener */
-  constructor(token, listener) {
+  /**
+   * @param {string} token @param {Listener<F>} listener
+   * @param {(buffer: ArrayBuffer) => Message<F>} read what binary messages mean
+   */
+  constructor(token, listener, read = /** @type {any} */ (decode)) {
     this.token = token;
     this.listener = listener;
+    this.read = read;
     this.calls = 0; // in a row that failed
-    this.heard = 0; // when something came last
+    this.silence = 0; // milliseconds of drawing since something came last
+    this.drawn = 0; // when the page drew last
     this.moving = false; // frames should be coming
     this.taken = 0; // frames that came since credit was last returned
     /** @type {number | undefined} */ this.timer = undefined;
@@ -59,7 +73,7 @@ export class Connection {
     socket.onmessage = ({ data }) => this.#hear(data);
     socket.onclose = ({ code, reason }) => this.#lost(code, reason);
     this.socket = socket;
-    this.heard = performance.now();
+    this.silence = 0;
   }
 
   /** @param {string} message one of `say` */
@@ -73,15 +87,17 @@ export class Connection {
       this.send(say.credit(Math.min(this.taken, MAX_CREDITS)));
       this.taken = 0;
     }
-    // After a sleep a line may be dead without a word.
-    if (this.moving && performance.now() - this.heard > SILENCE) this.#hangUp();
+    // After a sleep a line may be dead without a word. A page that was busy, hidden or asleep
+    // itself has heard nothing either: that time does not count.
+    const now = performance.now();
+    this.silence += Math.min(now - this.drawn, BUSY);
+    this.drawn = now;
+    if (this.moving && this.silence > SILENCE) this.#hangUp();
   }
 
   /** @param {ArrayBuffer | string} data */
   #hear(data) {
-    const now = performance.now();
-    // A page that was hidden has asked for nothing meanwhile.
-    this.heard = now;
+    this.silence = 0;
     if (this.calls !== -1) this.listener.state("open", "");
     this.calls = -1;
     if (typeof data === "string") {
@@ -90,12 +106,12 @@ export class Connection {
       }
       return;
     }
-    const message = decode(data);
+    const message = this.read(data);
     if (message.kind === "scene") this.listener.scene(message.scene);
     else {
       // The ticks beside come with the frame before them, for the same credit.
       if (!message.frame.twin) this.taken++;
-      this.moving = message.frame.playing;
+      this.moving = message.moving ?? message.frame.playing;
       this.listener.frame(message.frame);
     }
   }
@@ -120,7 +136,6 @@ export class Connection {
   }
 
   #hurry() {
-    this.heard = performance.now();
     if (this.timer === undefined || document.hidden) return;
     clearTimeout(this.timer);
     this.call();

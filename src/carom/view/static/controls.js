@@ -1,5 +1,6 @@
-/** Buttons, sliders and keys of the page. */
-import { cameraKey } from "./gestures.js";
+/** The bar and the buttons of the page; `keys.js` has the keys. */
+import { at, put } from "./dom.js";
+import { KEYS, printed, titleOf } from "./keys.js";
 import { multiple } from "./numbers.js";
 import { FASTEST, SLOWEST } from "./wire.js";
 
@@ -7,22 +8,14 @@ const STEPS = 50; // of the speed slider, per power of ten
 const NOTCH = 3; // steps around 1× in which the slider catches
 
 /**
- * @typedef {object} Wishes what controls ask of the page
- * @property {() => void} toggle play or pause
- * @property {() => void} restart
+ * @typedef {object} Wishes what controls ask of the page, beside the actions of the keys
  * @property {(speed: number) => void} speed
- * @property {(mode: string) => void} color
- * @property {(wire: boolean) => void} wire
- * @property {() => void} fit
- * @property {(open: boolean) => void} panel
+ * @property {() => void} layout the panel opened or closed
  */
 
-/** @template {HTMLElement} T @param {string} id @returns {T} */
-const at = (id) => /** @type {T} */ (document.getElementById(id));
-
 export class Controls {
-  /** @param {Wishes} wishes @param {import("./camera.js").Camera} camera */
-  constructor(wishes, camera) {
+  /** @param {import("./keys.js").Actions} actions @param {Wishes} wishes */
+  constructor(actions, wishes) {
     this.wishes = wishes;
     this.speed = 1;
     this.slider = /** @type {HTMLInputElement} */ (at("speed"));
@@ -30,59 +23,55 @@ export class Controls {
     this.slider.max = String(STEPS * Math.log10(FASTEST));
     this.slider.addEventListener("input", () => {
       const steps = this.slider.valueAsNumber;
-      this.#ask(Math.abs(steps) <= NOTCH ? 1 : 10 ** (steps / STEPS));
+      this.ask(Math.abs(steps) <= NOTCH ? 1 : 10 ** (steps / STEPS));
     });
-    at("speed-value").addEventListener("click", () => this.#ask(1));
-    at("play").addEventListener("click", wishes.toggle);
-    at("restart").addEventListener("click", wishes.restart);
-    at("fit").addEventListener("click", wishes.fit);
-    at("panel-toggle").addEventListener("click", () => this.openPanel(at("panel").hidden));
-    for (const input of document.querySelectorAll("input[name=color], input[name=look]")) {
-      input.addEventListener("change", () => {
-        const { name, value } = /** @type {HTMLInputElement} */ (input);
-        if (name === "color") wishes.color(value);
-        else wishes.wire(value === "wire");
-      });
+    for (const button of document.querySelectorAll("button[data-action]")) {
+      const { action } = /** @type {HTMLElement & {dataset: {action: string}}} */ (button).dataset;
+      name(button, titleOf(action));
+      button.addEventListener("click", () => actions[action]());
     }
-    addEventListener("keydown", (event) => this.#key(event, camera));
   }
 
   /** @param {boolean} open */
   openPanel(open) {
     at("panel").hidden = !open;
     at("panel-toggle").setAttribute("aria-expanded", String(open));
-    this.wishes.panel(open);
+    this.wishes.layout();
   }
 
-  /** Show whether time runs and how fast, as the server says. @param {import("./protocol.js").Keyframe} frame */
+  /** Show what time does, as the server says. @param {import("./protocol.js").Keyframe} frame */
   follow(frame) {
     const play = at("play");
-    const name = frame.playing ? "Pause" : "Play";
-    if (play.getAttribute("aria-label") !== name) {
-      play.setAttribute("aria-label", name);
-      play.title = `${name} (space)`;
+    const doing = frame.playing ? "Pause" : "Play";
+    if (play.getAttribute("aria-label") !== doing) {
+      const known = play.dataset.known === "yes";
+      play.dataset.known = "yes";
       play.dataset.playing = String(frame.playing);
+      play.setAttribute("aria-label", doing);
+      play.title = `${doing} (${printed(KEYS[0].keys[0])})`;
+      if (known) announce(frame.playing ? "Playing" : `Paused at ${frame.t.toFixed(2)}`);
+    }
+    const backwards = String(frame.reversed);
+    if (at("reverse").getAttribute("aria-pressed") !== backwards) {
+      at("reverse").setAttribute("aria-pressed", backwards);
+      at("reversed").hidden = !frame.reversed;
+      document.body.dataset.reversed = backwards;
+      announce(frame.reversed ? "Time runs backwards" : "Time runs forwards");
+      this.wishes.layout();
     }
     if (document.activeElement !== this.slider) this.#show(frame.speed);
   }
 
-  /** @param {string} mode */
-  markColor(mode) {
-    const input = document.querySelector(`input[name=color][value=${mode}]`);
-    if (input !== null) /** @type {HTMLInputElement} */ (input).checked = true;
-  }
-
-  /** @param {boolean} wire */
-  markWire(wire) {
-    const input = document.querySelector(`input[name=look][value=${wire ? "wire" : "solid"}]`);
-    if (input !== null) /** @type {HTMLInputElement} */ (input).checked = true;
-  }
-
-  /** @param {number} speed */
-  #ask(speed) {
+  /** Ask for a speed. @param {number} speed */
+  ask(speed) {
     const limited = Math.min(FASTEST, Math.max(SLOWEST, speed));
     this.#show(limited);
     this.wishes.speed(limited);
+  }
+
+  /** By steps of a fifth of a power of ten. @param {number} steps */
+  shift(steps) {
+    this.ask(this.speed * 10 ** (steps / 5));
   }
 
   /** @param {number} speed */
@@ -92,55 +81,17 @@ export class Controls {
     this.slider.dataset.shown = "yes";
     this.slider.valueAsNumber = STEPS * Math.log10(speed);
     this.slider.setAttribute("aria-valuetext", `${multiple(speed)} speed`);
-    at("speed-value").textContent = multiple(speed);
+    put(at("speed-value"), multiple(speed));
   }
+}
 
-  /** @param {KeyboardEvent} event @param {import("./camera.js").Camera} camera */
-  #key(event, camera) {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const focus = document.activeElement;
-    const typing = focus instanceof HTMLInputElement;
-    // Arrow keys and space belong to whatever has the focus, if it uses them.
-    if (typing && (event.key.startsWith("Arrow") || (event.key === " " && focus !== this.slider))) {
-      return;
-    }
-    if (focus instanceof HTMLButtonElement && (event.key === " " || event.key === "Enter")) return;
-    if (this.#command(event.key) || cameraKey(event, camera)) event.preventDefault();
-  }
+/** Tell a screen reader. @param {string} sentence */
+export function announce(sentence) {
+  at("state").textContent = sentence;
+}
 
-  /** @param {string} key */
-  #command(key) {
-    const look = document.querySelector("input[name=look]:checked");
-    const wire = look !== null && /** @type {HTMLInputElement} */ (look).value === "wire";
-    const shift = 10 ** (10 / STEPS);
-    switch (key.toLowerCase()) {
-      case " ":
-        this.wishes.toggle();
-        return true;
-      case "r":
-        this.wishes.restart();
-        return true;
-      case "f":
-      case "home":
-        this.wishes.fit();
-        return true;
-      case "w":
-        this.wishes.wire(!wire);
-        return true;
-      case "p":
-        this.openPanel(at("panel").hidden);
-        return true;
-      case "1":
-        this.#ask(1);
-        return true;
-      case ",":
-        this.#ask(this.speed / shift);
-        return true;
-      case ".":
-        this.#ask(this.speed * shift);
-        return true;
-      default:
-        return false;
-    }
-  }
+/** @param {Element} button @param {string} title with the key in brackets */
+function name(button, title) {
+  /** @type {HTMLElement} */ (button).title = title;
+  button.setAttribute("aria-label", title.replace(/ \([^)]*\)$/, ""));
 }

@@ -1,54 +1,129 @@
-/** Mouse, touch and keys that move the camera. */
+/**
+ * Mouse, touch and keys that move the camera. What a tool wants for itself goes to the tool:
+ * taps, and drags that begin where it says so.
+ *
+ * @typedef {object} Drag a pointer that belongs to a tool until it is lifted
+ * @property {(x: number, y: number) => void} move
+ * @property {() => void} end
+ * @property {() => void} cancel
+ *
+ * @typedef {object} Tool places are pixels from the canvas's upper left corner, y downwards
+ * @property {(x: number, y: number) => Drag | null} grab a pointer went down: does it belong to you?
+ * @property {(x: number, y: number, touch: boolean) => void} tap
+ * @property {(x: number, y: number) => void} twice two taps at one place
+ * @property {(x: number, y: number) => void} hover
+ */
 
 const TURN = 0.0065; // radians per pixel
 const KEY_TURN = 0.08; // radians per key
 const KEY_PAN = 24; // pixels per key
 const KEY_ZOOM = 1.12;
+const STILL = 5; // pixels: a pointer that moved less has only tapped
+const SOON = 350; // milliseconds between two taps of one double tap
+const NEAR = 24; // pixels between them
+const LOOSE = 30; // pixels two fingers must move together before they let go of a followed sphere
+
+/** @typedef {{x: number, y: number}} Place */
 
 /**
  * @param {HTMLCanvasElement} canvas
  * @param {import("./camera.js").Camera} camera
+ * @param {Tool} tool
  */
-export function attachPointers(canvas, camera) {
-  /** @type {Map<number, {x: number, y: number}>} */
+export function attachPointers(canvas, camera, tool) {
+  /** @type {Map<number, Place>} */
   const down = new Map();
+  /** @type {Drag | null} */ let drag = null;
+  /** Where the only pointer went down, as long as it may still be a tap. @type {Place | null} */
+  let start = null;
+  let last = { x: 0, y: 0, time: -Infinity }; // tap
+  let loose = 0; // pixels that two fingers have moved together
+
+  const place = (/** @type {MouseEvent} */ event) => {
+    const { left, top } = canvas.getBoundingClientRect();
+    return { x: event.clientX - left, y: event.clientY - top };
+  };
   const spread = () => {
     const [a, b] = [...down.values()];
     return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, d: Math.hypot(a.x - b.x, a.y - b.y) };
   };
+
   canvas.addEventListener("pointerdown", (event) => {
+    const here = place(event);
     canvas.setPointerCapture(event.pointerId);
-    down.set(event.pointerId, { x: event.clientX, y: event.clientY });
-  });
-  canvas.addEventListener("pointermove", (event) => {
-    const last = down.get(event.pointerId);
-    if (last === undefined) return;
-    const place = { x: event.clientX, y: event.clientY };
-    if (down.size === 2) {
-      const before = spread();
-      down.set(event.pointerId, place);
-      const after = spread();
-      camera.pan(after.x - before.x, after.y - before.y);
-      if (before.d > 0 && after.d > 0) camera.zoom(before.d / after.d);
+    down.set(event.pointerId, here);
+    if (down.size > 1) {
+      // A second finger: it is the camera that is meant.
+      drag?.cancel();
+      drag = start = null;
+      loose = 0;
       return;
     }
-    down.set(event.pointerId, place);
-    const [x, y] = [place.x - last.x, place.y - last.y];
+    const main = event.button === 0 && !event.shiftKey;
+    drag = main ? tool.grab(here.x, here.y) : null;
+    start = main && drag === null ? here : null;
+  });
+
+  canvas.addEventListener("pointermove", (event) => {
+    const here = place(event);
+    const before = down.get(event.pointerId);
+    if (before === undefined) {
+      if (event.pointerType !== "touch" && down.size === 0) tool.hover(here.x, here.y);
+      return;
+    }
+    if (drag !== null) return drag.move(here.x, here.y);
+    if (start !== null) {
+      if (Math.hypot(here.x - start.x, here.y - start.y) < STILL) return;
+      start = null;
+    }
+    if (down.size >= 2) return pinch(event.pointerId, here);
+    down.set(event.pointerId, here);
+    const [x, y] = [here.x - before.x, here.y - before.y];
     if (event.buttons & 6 || event.shiftKey) camera.pan(x, y);
     else camera.turn(x * TURN, y * TURN);
   });
-  for (const end of ["pointerup", "pointercancel"]) {
-    canvas.addEventListener(end, (event) =>
-      down.delete(/** @type {PointerEvent} */ (event).pointerId),
-    );
+
+  /** @param {number} pointer @param {Place} here */
+  function pinch(pointer, here) {
+    const before = spread();
+    down.set(pointer, here);
+    const after = spread();
+    const [x, y] = [after.x - before.x, after.y - before.y];
+    loose += Math.hypot(x, y);
+    if (!camera.follows || loose > LOOSE) camera.pan(x, y);
+    if (before.d > 0 && after.d > 0) camera.zoom(before.d / after.d);
   }
+
+  canvas.addEventListener("pointerup", (event) => {
+    if (!down.delete(event.pointerId)) return;
+    const here = place(event);
+    drag?.end();
+    if (start !== null) tap(here, event.pointerType === "touch");
+    drag = start = null;
+  });
+  canvas.addEventListener("pointercancel", (event) => {
+    if (!down.delete(event.pointerId)) return;
+    drag?.cancel();
+    drag = start = null;
+  });
+
+  /** @param {Place} here @param {boolean} touch */
+  function tap({ x, y }, touch) {
+    const time = performance.now();
+    const twice = time - last.time < SOON && Math.hypot(x - last.x, y - last.y) < NEAR;
+    last = { x, y, time: twice ? -Infinity : time };
+    if (twice) tool.twice(x, y);
+    else tool.tap(x, y, touch);
+  }
+
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   canvas.addEventListener(
     "wheel",
     (event) => {
       event.preventDefault();
       const pixels = event.deltaY * [1, 30, 300][event.deltaMode];
-      camera.zoom(Math.exp(Math.max(-240, Math.min(240, pixels)) * 0.0016));
+      const factor = Math.exp(Math.max(-240, Math.min(240, pixels)) * 0.0016);
+      camera.glide(() => camera.zoom(factor));
     },
     { passive: false },
   );
@@ -64,12 +139,14 @@ export function cameraKey(event, camera) {
   ];
   if (arrow !== undefined) {
     const [x, y] = arrow;
-    if (event.shiftKey) camera.pan(-x * KEY_PAN, -y * KEY_PAN);
-    else camera.turn(x * KEY_TURN, -y * KEY_TURN);
+    camera.glide(() => {
+      if (event.shiftKey) camera.pan(-x * KEY_PAN, -y * KEY_PAN);
+      else camera.turn(x * KEY_TURN, -y * KEY_TURN);
+    });
     return true;
   }
-  if (event.key === "+" || event.key === "=") camera.zoom(1 / KEY_ZOOM);
-  else if (event.key === "-" || event.key === "_") camera.zoom(KEY_ZOOM);
+  if (event.key === "+" || event.key === "=") camera.glide(() => camera.zoom(1 / KEY_ZOOM));
+  else if (event.key === "-" || event.key === "_") camera.glide(() => camera.zoom(KEY_ZOOM));
   else return false;
   return true;
 }

@@ -11,14 +11,10 @@
  * @typedef {object} Moment one sphere in one keyframe
  * @property {Vec3} x
  * @property {Vec3} v
- * @property {number} count impulses so far in 31 bits; the top bit says that gravity does not act
- * @typedef {import("./protocol.js").Keyframe} Keyframe
+ * @property {number} count its count byte
  */
 import { add, dot, scale, sub } from "./matrix.js";
 import { STILL } from "./wire.js";
-
-/** Does no gravity act? @param {number} count */
-const still = (count) => (count & STILL) !== 0;
 
 /**
  * Shift x by whole boxes to the image nearest to a place.
@@ -55,37 +51,76 @@ const mix = (a, b, s) => add(scale(a, 1 - s), scale(b, s));
 export function motion(a, b, s, h, gravity, period) {
   if (!(h > 0)) return { x: b.x, v: b.v, v2: dot(b.v, b.v) };
   const hits = (b.count - a.count) & 0x7fffffff;
-  if (hits > 1 || still(a.count) !== still(b.count)) return blend(a, b, s, h, period);
-  const g = still(a.count) ? /** @type {Vec3} */ ([0, 0, 0]) : gravity;
+  if (hits > 1 || (a.count & STILL) !== (b.count & STILL)) return blend(a, b, s, h, period);
+  const g = a.count & STILL ? /** @type {Vec3} */ ([0, 0, 0]) : gravity;
   const forward = add(a.x, add(scale(a.v, s), scale(g, 0.5 * s * s)));
   const ahead = add(a.v, scale(g, s));
   const behind = sub(b.v, scale(g, h - s));
   const backward = (/** @type {Vec3} */ x1) =>
     add(x1, sub(scale(g, 0.5 * (h - s) ** 2), scale(b.v, h - s)));
-  const w1 = sub(b.v, scale(g, h));
-  const fall = scale(g, 0.5 * h * h);
   if (hits === 0) {
-    const x1 = nearestImage(b.x, add(a.x, add(scale(a.v, h), fall)), period);
+    const x1 = nearestImage(b.x, add(a.x, add(scale(a.v, h), scale(g, 0.5 * h * h))), period);
     const x = wrap(mix(forward, backward(x1), s / h), period);
     return { x, v: mix(ahead, behind, s / h), v2: mixed(ahead, behind, s / h) };
   }
-  const kick = sub(a.v, w1);
-  const strength = dot(kick, kick);
-  let crossing = 0.5 * h;
-  let x1 = b.x;
-  // The image depends on the crossing and the crossing on the image: the second round settles it.
-  for (let round = 0; round < 2; round++) {
-    const end = add(add(scale(a.v, crossing), scale(w1, h - crossing)), fall);
-    x1 = nearestImage(b.x, add(a.x, end), period);
-    const d = sub(sub(x1, fall), add(a.x, scale(w1, h)));
-    if (strength > 0) crossing = Math.min(h, Math.max(0, dot(d, kick) / strength));
-  }
-  return s < crossing
+  const { s: when, x1 } = meeting(a, b, h, g, period);
+  return s < when
     ? { x: wrap(forward, period), v: ahead, v2: dot(ahead, ahead) }
     : { x: wrap(backward(x1), period), v: behind, v2: dot(behind, behind) };
 }
 
-/** @param {Vec3} v @param {Vec3} w @param {number} s */
+/**
+ * When and where the paths forward and backward cross, and the image of the second place there.
+ * @param {Moment} a @param {Moment} b @param {number} h @param {Vec3} g @param {Vec3} period
+ */
+function meeting(a, b, h, g, period) {
+  const w1 = sub(b.v, scale(g, h));
+  const fall = scale(g, 0.5 * h * h);
+  const kick = sub(a.v, w1);
+  const strength = dot(kick, kick);
+  let s = 0.5 * h;
+  let x1 = b.x;
+  // The image depends on the crossing and the crossing on the image: the second round settles it.
+  for (let round = 0; round < 2; round++) {
+    const end = add(add(scale(a.v, s), scale(w1, h - s)), fall);
+    x1 = nearestImage(b.x, add(a.x, end), period);
+    const d = sub(sub(x1, fall), add(a.x, scale(w1, h)));
+    if (strength > 0) s = Math.min(h, Math.max(0, dot(d, kick) / strength));
+  }
+  return { s, x: wrap(add(a.x, add(scale(a.v, s), scale(g, 0.5 * s * s))), period), x1 };
+}
+
+/**
+ * The corner of a path between two keyframes: null unless there was exactly one impulse.
+ * @param {Moment} a @param {Moment} b @param {number} h @param {Vec3} gravity @param {Vec3} period
+ * @returns {{s: number, x: Vec3} | null} s after the first keyframe
+ */
+export function crossing(a, b, h, gravity, period) {
+  const single = ((b.count - a.count) & 0x7fffffff) === 1 && (a.count & STILL) === (b.count & STILL);
+  if (!single || !(h > 0)) return null;
+  const { s, x } = meeting(a, b, h, a.count & STILL ? [0, 0, 0] : gravity, period);
+  return { s, x };
+}
+
+/** @param {import("./protocol.js").Keyframe} frame @param {number} i @returns {Moment} */
+export const momentOf = ({ position: x, velocity: v, counts }, i) => ({
+  x: [x[3 * i], x[3 * i + 1], x[3 * i + 2]],
+  v: [v[3 * i], v[3 * i + 1], v[3 * i + 2]],
+  count: counts[i],
+});
+
+/**
+ * Sphere i at the moment t between two keyframes.
+ * @param {import("./protocol.js").Keyframe} first @param {import("./protocol.js").Keyframe} second
+ * @param {number} t @param {number} i @param {Vec3} period
+ */
+export function placeOf(first, second, t, i, period) {
+  const h = second.t - first.t;
+  const s = Math.min(Math.max(t - first.t, 0), h);
+  return motion(momentOf(first, i), momentOf(second, i), s, h, second.gravity, period);
+}
+
+/** @param {Vec3} v @param {Vec3} w @param {number} s energies are mixed, not velocities */
 const mixed = (v, w, s) => (1 - s) * dot(v, v) + s * dot(w, w);
 
 /**
@@ -94,24 +129,5 @@ const mixed = (v, w, s) => (1 - s) * dot(v, v) + s * dot(w, w);
 function blend(a, b, s, h, period) {
   const end = add(a.x, scale(add(a.v, b.v), 0.5 * h));
   const x1 = nearestImage(b.x, end, period);
-  const x = wrap(mix(a.x, x1, s / h), period);
-  return { x, v: mix(a.v, b.v, s / h), v2: mixed(a.v, b.v, s / h) };
-}
-
-/** Sphere `i` of a keyframe. @param {Keyframe} keyframe @param {number} i @returns {Moment} */
-function momentOf({ position: x, velocity: v, counts }, i) {
-  const k = 3 * i;
-  return { x: [x[k], x[k + 1], x[k + 2]], v: [v[k], v[k + 1], v[k + 2]], count: counts[i] };
-}
-
-/**
- * Where sphere `i` is at the time `t`, between two keyframes, and how fast.
- * @param {Keyframe} first @param {Keyframe} second
- * @param {number} t @param {number} i @param {number[]} period 0 on axes that are not periodic
- */
-export function placeOf(first, second, t, i, period) {
-  const h = second.t - first.t;
-  const s = Math.min(Math.max(t - first.t, 0), h);
-  const [a, b] = [momentOf(first, i), momentOf(second, i)];
-  return motion(a, b, s, h, second.gravity, /** @type {Vec3} */ (period));
+  return { x: wrap(mix(a.x, x1, s / h), period), v: mix(a.v, b.v, s / h), v2: mixed(a.v, b.v, s / h) };
 }

@@ -1,76 +1,82 @@
-/** Says what the colours mean, with numbers. */
-import { SPECIES, SPEED_SCALE, css, saturated, unpack } from "./colors.js";
-import { short } from "./numbers.js";
+/**
+ * Says what the colours mean, with numbers.
+ * @typedef {import("./protocol.js").ColorMode} ColorMode
+ * @typedef {import("./protocol.js").Scene} Scene
+ */
+import { SCALES, SPECIES, css, saturated, unpack } from "./colors.js";
+import { element } from "./dom.js";
+import { count, short } from "./numbers.js";
+import { roundUp } from "./scales.js";
+import { STILL } from "./wire.js";
 
 const HUES = 5; // rows of the energy scale: a sphere keeps its own hue
+const FEWEST = 5; // collisions at the end of the scale, at least: one step must not look like all
 
 /**
- * @param {HTMLElement} place
- * @param {import("./renderer.js").ColorMode} mode
- * @param {import("./protocol.js").Scene} scene
+ * The number at the end of the colour scale.
+ * @param {ColorMode} mode @param {Scene} scene @param {Uint32Array | undefined} counts
  */
-export function drawLegend(place, mode, scene) {
-  place.replaceChildren(...parts(mode, scene));
+export function fullOf(mode, scene, counts) {
+  if (mode === "speed") return scene.about.full_speed;
+  if (mode !== "collisions") return scene.about.full_energy;
+  let most = FEWEST;
+  for (const each of counts ?? []) most = Math.max(most, each & ~STILL);
+  return roundUp(most);
 }
 
-/** @param {string} tag @param {string} kind @param {string} [text] */
-function element(tag, kind, text = "") {
-  const made = document.createElement(tag);
-  made.className = kind;
-  made.textContent = text;
-  return made;
+/** @param {HTMLElement} place @param {ColorMode} mode @param {number} full @param {Scene} scene */
+export function drawLegend(place, mode, full, scene) {
+  place.replaceChildren(...parts(mode, full, scene));
 }
 
-/** @param {import("./renderer.js").ColorMode} mode @param {import("./protocol.js").Scene} scene */
-function parts(mode, scene) {
-  const { full_energy, full_speed } = scene.about;
+/** @param {ColorMode} mode @param {number} full @param {Scene} scene @returns {Node[]} */
+function parts(mode, full, scene) {
   if (mode === "energy") {
     const rows = someColors(scene).map((own) => bar([saturated(own, 0), saturated(own, 1)]));
-    const note = "pale: slow · strong: full of energy";
-    return [...rows, scale(full_energy, "kinetic energy"), element("p", "note", note)];
+    const note = "Pale: slow. Strong: full of energy.";
+    return [...rows, scale(`${short(full)} +`, "kinetic energy"), element("p", { class: "note" }, note)];
   }
-  if (mode === "speed") return [bar(SPEED_SCALE), scale(full_speed, "speed")];
+  if (mode === "speed") return [bar(SCALES.speed), scale(`${short(full)} +`, "speed")];
+  if (mode === "collisions") return [bar(SCALES.collisions), scale(count(full), "collisions so far")];
   if (mode === "species") return species(scene);
-  return [element("p", "note", "each sphere in its own colour")];
+  return [element("p", { class: "note" }, "Each sphere in its own colour.")];
 }
 
 /** @param {import("./colors.js").Rgb[]} stops */
 function bar(stops) {
-  const made = element("div", "bar");
+  const made = element("div", { class: "bar" });
   made.style.setProperty("--scale", `linear-gradient(90deg, ${stops.map(css).join(", ")})`);
   return made;
 }
 
-/** @param {number} full @param {string} name */
-function scale(full, name) {
-  const made = element("div", "scale");
-  made.append(
-    element("span", "", "0"),
-    element("span", "name", name),
-    element("span", "", `${short(full)} +`),
+/** @param {string} end @param {string} name */
+function scale(end, name) {
+  return element(
+    "div",
+    { class: "scale" },
+    element("span", {}, "0"),
+    element("span", { class: "name" }, name),
+    element("span", {}, end),
   );
-  return made;
 }
 
-/** Some of the colours in the scene, far apart in the list. @param {import("./protocol.js").Scene} scene */
+/** Some of the colours in the scene, far apart in the list. @param {Scene} scene */
 function someColors(scene) {
   const all = [...new Set(scene.color.slice(0, 4096))];
   const rows = Math.min(HUES, all.length);
   return Array.from({ length: rows }, (_, k) => unpack(all[Math.floor((k * all.length) / rows)]));
 }
 
-/** @param {import("./protocol.js").Scene} scene */
+/** @param {Scene} scene */
 function species(scene) {
   /** @type {Map<number, number>} */
   const counts = new Map();
   for (const kind of scene.species) counts.set(kind, (counts.get(kind) ?? 0) + 1);
   const kinds = [...counts.keys()].sort((a, b) => a - b).slice(0, SPECIES.length);
   return kinds.map((kind) => {
-    const row = element("div", "species");
-    const dot = element("span", "dot");
+    const dot = element("span", { class: "dot" });
     dot.style.setProperty("--scale", css(SPECIES[kind % SPECIES.length]));
-    row.append(dot, element("span", "", `species ${kind}`));
-    row.append(element("span", "count", String(counts.get(kind))));
-    return row;
+    const many = element("span", { class: "count" }, count(counts.get(kind) ?? 0));
+    return element("div", { class: "species" }, dot, element("span", {}, `species ${kind}`), many);
   });
 }

@@ -1,162 +1,266 @@
 /** Ties the parts of the page together. */
 import { Camera } from "./camera.js";
 import { Connection, takeToken } from "./connection.js";
-import { Controls } from "./controls.js";
-import { attachPointers } from "./gestures.js";
-import { drawLegend } from "./legend.js";
-import { dot } from "./matrix.js";
+import { Controls, announce } from "./controls.js";
+import { at, put } from "./dom.js";
+import { toggleFullScreen, watchFullScreen } from "./fullscreen.js";
+import { Gallery } from "./gallery.js";
+import { cameraKey } from "./gestures.js";
+import { Help } from "./help.js";
+import { Inspector } from "./inspector.js";
+import { listen } from "./keys.js";
+import { layout } from "./layout.js";
+import { readLink, runsAlready } from "./link.js";
+import { Look } from "./look.js";
+import { Parameters } from "./parameters.js";
+import { Plots } from "./plots.js";
 import { say } from "./protocol.js";
 import { Readout } from "./readout.js";
 import { Renderer } from "./renderer.js";
+import { keepSections } from "./sections.js";
+import { SettingsPanel } from "./settings.js";
+import { Share } from "./share.js";
+import { Comparison, around } from "./split.js";
+import { standBack } from "./standpoint.js";
+import { Theme } from "./theme.js";
 import { Timeline } from "./timeline.js";
+import { toast } from "./toast.js";
+import { attachToolbar } from "./toolbar.js";
+import { Hands } from "./tools.js";
 
+/**
+ * @typedef {import("./protocol.js").Scene} Scene
+ * @typedef {import("./protocol.js").Keyframe} Keyframe
+ * @typedef {import("./protocol.js").Notes} Notes
+ */
+
+const SLOWLY = 250; // milliseconds between looks at what changes slowly
+const LABELS = 80; // pixels that the numbers above the halves of the split screen take
 const NARROW = matchMedia("(max-width: 720px)");
-const LIGHT = matchMedia("(prefers-color-scheme: light)");
-
-/** @param {string} id */
-const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 
 class Page {
   constructor() {
+    const send = (/** @type {string} */ message) => this.connection.send(message);
+    const fit = () => this.camera.glide(() => this.#fit());
+    this.wanted = readLink(location.hash); // the scene that the address asks for
+    const token = takeToken();
     this.canvas = /** @type {HTMLCanvasElement} */ (at("view"));
     this.renderer = new Renderer(this.canvas);
     this.camera = new Camera();
     this.timeline = new Timeline();
-    this.readout = new Readout();
-    /** @type {import("./protocol.js").Scene | null} */ this.scene = null;
-    /** @type {import("./renderer.js").Options} */
-    this.options = {
-      color: "energy",
-      full: 1,
-      wire: false,
-      theme: LIGHT.matches ? "light" : "dark",
-      arrows: false,
-    };
-    /** @type {[import("./protocol.js").Keyframe, import("./protocol.js").Keyframe] | null} */
-    this.pair = null;
-    this.stale = true; // something other than time and camera has changed
-    this.drawn = { t: NaN, camera: -1 };
+    this.twin = new Timeline();
+    /** @type {Scene | null} */ this.scene = null;
+    /** @type {Notes["settings"] | null} */ this.settings = null;
+    /** @type {import("./split.js").Viewport[]} */ this.viewports = [];
+    this.stale = true; // something other than time, camera and hands has changed
+    this.drawn = { t: NaN, camera: -1, hands: -1 };
     this.before = performance.now();
-    this.controls = new Controls(this.#wishes(), this.camera);
-    this.connection = new Connection(takeToken(), {
+    this.looked = -Infinity; // when slow things were last looked at
+    const changed = () => (this.stale = true);
+    this.theme = new Theme(changed);
+    this.look = new Look(changed);
+    this.readout = new Readout();
+    this.plots = new Plots(at("plots"));
+    this.hands = new Hands({ canvas: this.canvas, camera: this.camera, send, toast, fit });
+    this.inspector = new Inspector(at("inspector"), this.hands);
+    this.gallery = new Gallery((name) => send(say.scene(name, {})));
+    this.help = new Help();
+    const [picture, askSource] = [() => this.#photo(), () => send(say.source())];
+    this.share = new Share({ token, picture, askSource });
+    this.parameters = new Parameters((name, options) => send(say.scene(name, options)));
+    this.laws = new SettingsPanel(send, this.camera);
+    this.comparison = new Comparison();
+    this.actions = this.#actions(send, fit);
+    this.controls = new Controls(this.actions, {
+      speed: (value) => send(say.speed(value)),
+      layout: () => this.#resize(),
+    });
+    this.#watch();
+    this.connection = new Connection(token, {
       scene: (scene) => this.#setScene(scene),
       frame: (frame) => this.#take(frame),
-      note: (key, value) => {
-        if (key === "failure") this.#say("failure", /** @type {string} */ (value));
-      },
+      note: (key, value) => this.#hear({ [key]: value }),
       state: (state, sentence) => this.#state(state, sentence),
     });
-    attachPointers(this.canvas, this.camera);
-    this.controls.openPanel(!NARROW.matches);
-    new ResizeObserver(() => this.#resize()).observe(this.canvas);
-    NARROW.addEventListener("change", () => this.controls.openPanel(!NARROW.matches));
-    LIGHT.addEventListener("change", () => {
-      this.options.theme = LIGHT.matches ? "light" : "dark";
-      this.stale = true;
-    });
-    this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
-    this.canvas.addEventListener("webglcontextrestored", () => location.reload());
-    this.#resize();
     requestAnimationFrame((now) => this.#tick(now));
   }
 
-  /** @returns {import("./controls.js").Wishes} */
-  #wishes() {
+  /** Listen to the window. */
+  #watch() {
+    attachToolbar(this.hands);
+    listen(this.actions, (event) => this.hands.key(event), (event) => cameraKey(event, this.camera));
+    keepSections(at("panel"));
+    const arrange = () => {
+      at(NARROW.matches ? "panel-top" : "actions").prepend(at("extras"));
+      this.controls.openPanel(!NARROW.matches);
+    };
+    arrange();
+    NARROW.addEventListener("change", arrange);
+    new ResizeObserver(() => this.#resize()).observe(this.canvas);
+    watchFullScreen(at("fullscreen"));
+    this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+    this.canvas.addEventListener("webglcontextrestored", () => location.reload());
+  }
+
+  /**
+   * @param {(message: string) => void} send @param {() => void} fit
+   * @returns {import("./keys.js").Actions}
+   */
+  #actions(send, fit) {
     return {
-      toggle: () => {
-        const playing = this.timeline.newest?.playing ?? true;
-        this.connection.send(playing ? say.pause() : say.play());
-      },
-      restart: () => this.connection.send(say.restart()),
-      speed: (value) => this.connection.send(say.speed(value)),
-      color: (mode) => this.#setColor(/** @type {import("./renderer.js").ColorMode} */ (mode)),
-      wire: (wire) => this.#setWire(wire),
-      fit: () => this.#fit(),
-      panel: () => this.#resize(),
+      toggle: () => send(this.timeline.newest?.playing === false ? say.play() : say.pause()),
+      step: () => send(say.step()),
+      back: () => send(say.back()),
+      restart: () => send(say.restart()),
+      reverse: () => send(say.reverse()),
+      slower: () => this.controls.shift(-1),
+      faster: () => this.controls.shift(1),
+      normal: () => this.controls.ask(1),
+      wire: () => this.look.setWire(!this.look.wire),
+      nextColor: () => this.look.nextColor(),
+      fit,
+      compare: () => send(say.compare(!this.settings?.comparing)),
+      fullscreen: () => void toggleFullScreen(),
+      gallery: () => void this.gallery.open(this.scene?.about.origin?.name ?? null),
+      panel: () => this.controls.openPanel(at("panel").hidden),
+      settings: () => this.#openSettings(),
+      share: () => this.share.open(this.#title, this.scene?.about.origin ?? null),
+      theme: () => this.#nextTheme(),
+      help: () => this.help.open(),
+      leave: () => this.#leave(),
     };
   }
 
-  /** @param {import("./protocol.js").Scene} scene */
+  get #title() {
+    return this.scene?.about.title || "carom";
+  }
+
+  #openSettings() {
+    this.controls.openPanel(true);
+    const section = /** @type {HTMLDetailsElement} */ (at("section-settings"));
+    section.open = true;
+    section.querySelector("input")?.focus();
+  }
+
+  #nextTheme() {
+    this.theme.next();
+    const { choice } = this.theme;
+    toast(choice === "auto" ? "Dark or light as your system is." : `Always ${choice}.`);
+  }
+
+  /** Escape, when nothing is selected. */
+  #leave() {
+    if (this.settings?.comparing) this.actions.compare();
+    else if (NARROW.matches) this.controls.openPanel(false);
+    this.canvas.focus({ preventScroll: true });
+  }
+
+  /** @param {Scene} scene */
   #setScene(scene) {
     const before = this.scene;
     this.scene = scene;
     this.renderer.setScene(scene);
-    this.pair = null;
     this.timeline.clear();
+    this.twin.clear();
     const { about } = scene;
-    // After a restart the same scene comes again: what people chose stays.
-    const same =
-      before !== null &&
-      before.n === scene.n &&
-      JSON.stringify(before.about) === JSON.stringify(about);
-    if (!same) {
-      const title = about.title || "carom";
-      at("title").textContent = title;
-      document.title = title === "carom" ? title : `${title} · carom`;
-      at("view").setAttribute("aria-label", `${title}: ${scene.n} spheres in three dimensions`);
-      at("choose-species").hidden = new Set(scene.species).size < 2;
-      this.camera.stand(/** @type {[number, number, number]} */ (about.gravity));
-      this.#setColor(about.color);
-      this.#setWire(about.wire);
-      this.#fit();
-    }
+    const fresh = before === null || before.about.key !== about.key;
+    // Another number of balls in the same scene is no reason to change its colours.
+    const other = fresh && (about.origin === null || before?.about.origin?.name !== about.origin.name);
+    if (fresh) this.camera.stand(/** @type {[number, number, number]} */ (about.gravity));
+    const title = this.#title;
+    put(at("title"), title);
+    document.title = title === "carom" ? title : `${title} · carom`;
+    at("view").setAttribute("aria-label", `${title}: ${scene.n} spheres in three dimensions`);
+    this.parameters.setOrigin(about.origin);
+    this.laws.setScene(scene, fresh);
+    this.look.setScene(scene, other);
+    this.hands.setScene(scene);
+    this.plots.setScene(scene);
+    if (other) this.#resize();
+    if (other || (fresh && !this.camera.moved)) this.#fit();
+    this.#obeyAddress();
     this.stale = true;
   }
 
-  /** @param {import("./protocol.js").Keyframe} frame */
+  /** @param {Keyframe} frame */
   #take(frame) {
     if (frame.scene !== this.scene?.number) return;
+    this.plots.push(frame, this.theme.name);
+    if (frame.twin) {
+      this.twin.push(frame);
+      return;
+    }
     this.timeline.push(frame);
     this.readout.push(frame);
     this.controls.follow(frame);
   }
 
-  /** Look at everything, the way the scene asks for. */
-  #fit() {
-    if (this.scene === null) return;
-    const { camera } = this.scene.about;
-    const { bounds, faces } = this.renderer.walls;
-    this.camera.azimuth = -0.42;
-    this.camera.height = 0.3;
-    // From the gas's side of a plane that stands alone.
-    const behind = faces.some((face) => face.fade > 0 && dot(face.normal, this.camera.axes.back) < 0);
-    if (behind) this.camera.azimuth *= -1;
-    this.camera.fit(bounds);
-    if (camera !== null) {
-      /** @typedef {[number, number, number]} Vec3 */
-      this.camera.look(/** @type {Vec3} */ (camera.position), /** @type {Vec3} */ (camera.target));
+  /** @param {Partial<Notes>} note with one key */
+  #hear(note) {
+    if (note.failure !== undefined) this.#say("failure", note.failure);
+    if (note.settings !== undefined) this.#setSettings(note.settings);
+    if (note.event !== undefined) this.hands.showEvent(note.event);
+    if (note.walls !== undefined) this.plots.walls(note.walls);
+    if (note.source !== undefined) this.share.setSource(note.source);
+    if (note.catalogue !== undefined) {
+      this.gallery.setCatalogue(note.catalogue);
+      this.parameters.setCatalogue(note.catalogue);
+    }
+    if (note.role !== undefined) document.body.dataset.role = note.role;
+    if (note.refused !== undefined) {
+      toast(note.refused);
+      this.laws.revert();
+      this.parameters.revert();
     }
   }
 
-  /** @param {import("./renderer.js").ColorMode} mode */
-  #setColor(mode) {
-    this.options.color = mode;
-    const about = this.scene?.about;
-    this.options.full = (mode === "speed" ? about?.full_speed : about?.full_energy) ?? 1;
-    this.controls.markColor(mode);
-    if (this.scene !== null) drawLegend(at("legend"), mode, this.scene);
-    this.stale = true;
+  /** Load the scene that the link asked for, once, unless it runs already. */
+  #obeyAddress() {
+    const { wanted } = this;
+    this.wanted = null;
+    if (wanted === null || runsAlready(wanted, this.scene?.about.origin ?? null)) return;
+    this.connection.send(say.scene(wanted.name, wanted.options));
   }
 
-  /** @param {boolean} wire */
-  #setWire(wire) {
-    this.options.wire = wire;
-    this.controls.markWire(wire);
-    this.stale = true;
+  /** @param {Notes["settings"]} settings */
+  #setSettings(settings) {
+    const before = this.settings?.comparing ?? false;
+    this.settings = settings;
+    this.laws.show(settings);
+    const loses = Math.min(settings.restitution, settings.wall_restitution ?? 1) < 1;
+    document.body.dataset.loses = String(loses);
+    if (settings.comparing === before) return;
+    at("compare").setAttribute("aria-pressed", String(settings.comparing));
+    this.twin.clear();
+    this.comparison.show(settings.comparing);
+    announce(settings.comparing ? "Exact and ticks side by side" : "One picture");
+    this.#resize();
+  }
+
+  /** Look at everything, the way the scene asks for. */
+  #fit() {
+    if (this.scene !== null) standBack(this.camera, this.renderer.walls, this.scene.about);
   }
 
   #resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (width === 0 || height === 0) return;
-    const panel = at("panel");
-    const bar = at("bar").getBoundingClientRect();
-    const below = NARROW.matches && !panel.hidden ? panel.getBoundingClientRect() : bar;
-    this.camera.resize(width, height, {
-      left: 0,
-      right: NARROW.matches || panel.hidden ? 0 : width - panel.getBoundingClientRect().left,
-      top: NARROW.matches ? at("heading").getBoundingClientRect().bottom : 0,
-      bottom: height - below.top,
+    const covered = !at("panel").hidden;
+    const box = (/** @type {string} */ id) => at(id).getBoundingClientRect();
+    const split = this.settings?.comparing === true;
+    const top = box("heading").bottom;
+    const { viewports, size, insets } = layout({
+      width,
+      height,
+      right: covered && !NARROW.matches ? box("panel").left : width,
+      bottom: covered && NARROW.matches ? box("panel").top : box("bar").top,
+      top,
+      labels: split ? LABELS : 0,
+      narrow: NARROW.matches,
     });
+    this.viewports = viewports;
+    if (split) this.comparison.arrange(viewports, NARROW.matches ? 0 : top);
+    this.camera.resize(size.width, size.height, insets);
     if (!this.camera.moved) this.#fit();
     this.stale = true;
   }
@@ -165,12 +269,14 @@ class Page {
   #state(state, sentence) {
     document.body.dataset.connection = state;
     this.#say("connection", sentence);
-    if (state !== "open") this.timeline.clear();
+    if (state === "open") return;
+    this.timeline.clear();
+    this.twin.clear();
   }
 
   /** @param {string} id @param {string} sentence */
   #say(id, sentence) {
-    at(id).textContent = sentence;
+    put(at(id), sentence);
     at(id).hidden = sentence === "";
   }
 
@@ -181,27 +287,62 @@ class Page {
     this.before = now;
     const pair = this.timeline.advance(seconds);
     this.connection.returnCredit();
-    if (pair !== null) {
-      this.pair = pair;
-      this.readout.show(this.timeline.t, now);
-    }
-    if (this.pair === null) return;
+    if (pair === null || this.scene === null) return;
     const { t } = this.timeline;
-    const { version } = this.camera;
-    if (!this.stale && t === this.drawn.t && version === this.drawn.camera) return;
-    const [first, second] = this.pair;
-    const viewport = { x: 0, y: 0, ...this.camera.size };
-    this.renderer.draw({
-      sides: [{ first, second, t, viewport }],
-      camera: this.camera,
-      options: this.options,
-      marks: [],
-      arrows: [],
-      trails: [],
-      ghost: null,
-    });
-    this.drawn = { t, camera: version };
+    const sides = this.#sides(pair, t);
+    this.hands.setSides(sides);
+    this.readout.show(t, now);
+    this.plots.show(now);
+    if (now - this.looked > SLOWLY) this.#glance(now);
+    const next = { t, camera: this.camera.version, hands: this.hands.version };
+    const { drawn } = this;
+    const same = t === drawn.t && next.camera === drawn.camera && next.hands === drawn.hands;
+    if (same && !this.stale) return;
+    this.renderer.draw(this.#picture(sides));
+    this.drawn = next;
     this.stale = false;
+  }
+
+  /** @param {[Keyframe, Keyframe]} pair @param {number} t */
+  #sides([first, second], t) {
+    const sides = [{ first, second, t, viewport: this.viewports[0] }];
+    const beside = this.viewports.length > 1 ? around(this.twin.keyframes, t) : null;
+    if (beside !== null) {
+      sides.push({ first: beside[0], second: beside[1], t, viewport: this.viewports[1] });
+    }
+    return sides;
+  }
+
+  /** @param {import("./tools.js").Side[]} sides @returns {import("./renderer.js").Picture} */
+  #picture(sides) {
+    const { marks, arrows, trails, ghost } = this.hands.overlay();
+    const { color, full, wire } = this.look;
+    const options = { color, full, wire, theme: this.theme.name, arrows: this.hands.isOn("arrows") };
+    return { sides, camera: this.camera, options, marks, arrows, trails, ghost };
+  }
+
+  /** The picture as a file, in its middle what the page shows beside its panels. */
+  #photo() {
+    const { insets } = this.camera;
+    this.camera.insets = { left: 0, right: 0, top: 0, bottom: 0 };
+    const file = this.renderer.toBlob();
+    this.camera.insets = insets;
+    this.stale = true;
+    return file;
+  }
+
+  /** What changes slowly. @param {number} now */
+  #glance(now) {
+    this.looked = now;
+    this.laws.gravity.turnCompass();
+    this.hands.theme = this.theme.name;
+    const chosen = this.hands.selected !== null || this.hands.isOn("add");
+    at("section-inspector").hidden = !chosen;
+    const { newest } = this.timeline;
+    if (newest !== undefined) this.look.watch(newest.counts);
+    if (this.settings?.comparing) {
+      this.comparison.update([newest, this.twin.newest], this.settings.tick, now);
+    }
   }
 }
 

@@ -1,18 +1,13 @@
 /** The numbers on the page. */
+import { at, put as write } from "./dom.js";
 import { count, multiple, scientific, short } from "./numbers.js";
 
 const EVERY = 100; // milliseconds between changes, which nobody could read faster
 const SETTLED = 1500; // milliseconds until the speed reached is known
 const WINDOW = 1; // seconds over which collisions per second are counted
 
-/** @param {string} id */
-const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
-
 /** @param {string} id @param {string} text */
-function put(id, text) {
-  const element = at(id);
-  if (element.textContent !== text) element.textContent = text;
-}
+const put = (id, text) => write(at(id), text);
 
 export class Readout {
   constructor() {
@@ -50,6 +45,7 @@ export class Readout {
     const falls = frame.gravity.some((part) => part !== 0);
     this.#row("potential", falls, short(frame.potential, 4));
     this.#row("dissipated", Math.abs(frame.dissipated) > 1e-300, short(frame.dissipated, 4));
+    this.#row("temperature", Number.isFinite(frame.temperature), short(frame.temperature, 4));
     this.#drift(frame.drift);
     const lags = frame.playing && frame.reached < 0.9 * frame.speed && now - this.steady > SETTLED;
     put("lag", lags ? `running at ${multiple(frame.reached)}` : "");

@@ -132,7 +132,7 @@ export class Renderer {
   toBlob() {
     const { picture } = this;
     if (picture === null) return Promise.reject(new Error("there is no picture yet; draw one first"));
-    this.#draw(picture, LEVELS.length - 1, Math.max(2, devicePixelRatio));
+    this.#draw(picture, LEVELS.length - 1, Math.max(2, devicePixelRatio), true);
     return new Promise((done, failed) => {
       this.canvas.toBlob(
         (blob) => (blob === null ? failed(new Error("the browser made no PNG file")) : done(blob)),
@@ -145,13 +145,16 @@ export class Renderer {
   /**
    * @param {Picture} picture @param {number} quality index into LEVELS
    * @param {number} screen its pixels per pixel of the page
+   * @param {boolean} [file] is it to be saved?
    */
-  #draw(picture, quality, screen) {
+  #draw(picture, quality, screen, file = false) {
     const { gl, canvas, frame } = this;
     this.picture = picture;
     const level = LEVELS[quality];
     const ratio = Math.min(screen, finest(quality, this.traits.n));
-    let [width, height] = [1, 1];
+    // The canvas may be larger than its viewports; a file holds nothing but them.
+    const { clientWidth, clientHeight } = file ? { clientWidth: 0, clientHeight: 0 } : canvas;
+    let [width, height] = [clientWidth, clientHeight].map((n) => Math.max(1, Math.round(n * ratio)));
     for (const { viewport: v } of picture.sides) {
       width = Math.max(width, Math.round((v.x + v.width) * ratio));
       height = Math.max(height, Math.round((v.y + v.height) * ratio));

@@ -4,6 +4,7 @@ export const VERSION = 2;
 export const SOCKET_PATH = "/live";
 export const FRAME = 1;
 export const SCENE = 2;
+export const SKETCH = 3;
 export const PLAYING = 1;
 export const FAILED = 2;
 export const TWIN = 4;

@@ -1,0 +1,22 @@
+/** From where a scene is seen when nobody has moved the camera. */
+import { dot } from "./matrix.js";
+
+const [AZIMUTH, HEIGHT] = [-0.42, 0.3]; // radians: two walls and the floor are seen
+
+/**
+ * @param {import("./camera.js").Camera} camera
+ * @param {{bounds: any, faces: {fade: number, normal: import("./matrix.js").Vec3}[]}} walls
+ * @param {import("./protocol.js").About} about
+ */
+export function standBack(camera, { bounds, faces }, about) {
+  camera.azimuth = AZIMUTH;
+  camera.height = HEIGHT;
+  // From the gas's side of a plane that stands alone.
+  const behind = faces.some((face) => face.fade > 0 && dot(face.normal, camera.axes.back) < 0);
+  if (behind) camera.azimuth *= -1;
+  camera.fit(bounds);
+  if (about.camera === null) return;
+  /** @typedef {[number, number, number]} Vec3 */
+  const { position, target } = about.camera;
+  camera.look(/** @type {Vec3} */ (position), /** @type {Vec3} */ (target));
+}

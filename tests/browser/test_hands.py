@@ -1,0 +1,441 @@
+"""Hands in the picture, in a real browser: what is clicked, dragged and typed, and what it does."""
+
+import colorsys
+import math
+import time
+
+import numpy as np
+import pytest
+
+import carom
+
+from .png import pixels
+from .test_page import BLUE, GREEN, RED, around, hue, rgb, still_life, where
+
+#: Red, yellow, green, magenta: as far apart as hues can be that are not the background's blue.
+COLORS = {0.0: 0xF01818, 1 / 6: 0xE8E818, 1 / 3: 0x18E018, 5 / 6: 0xE818E8}
+
+
+def crowd(speed=0.0, world=carom.Box):
+    """Many balls of four colours, some in front of others."""
+    rng = np.random.default_rng(5)
+    places = [(x, y, z) for x in (-4, -2, 0, 2, 4) for y in (-4, 0, 4) for z in (-4, -2, 0, 2, 4)]
+    n = len(places)
+    return carom.Simulation(
+        carom.Scene(
+            carom.Spheres.of(
+                np.array(places) + rng.uniform(-0.4, 0.4, (n, 3)),
+                velocity=speed * rng.normal(size=(n, 3)),
+                radius=rng.uniform(0.3, 0.55, n),
+                color=np.array(list(COLORS.values()))[rng.integers(0, len(COLORS), n)],
+            ),
+            walls=(world(11, 11, 11),),
+            color="own",
+            pace=0.2,
+        )
+    )
+
+
+def colour_at(picture, x, y, half):
+    """The one hue of all pixels around a place; "nothing" on background; None if mixed or grey."""
+    found = set()
+    for r, g, b in picture[y - half : y + half + 1, x - half : x + half + 1].reshape(-1, 3) / 255.0:
+        h, s, v = colorsys.rgb_to_hsv(r, g, b)
+        nearest = min(COLORS, key=lambda c: abs((h - c + 0.5) % 1 - 0.5))
+        close = abs((h - nearest + 0.5) % 1 - 0.5) < 0.06
+        if close and s > 0.5 and v > 0.25:
+            found.add(nearest)
+        elif v < 0.5 and 0.52 < h < 0.72:
+            found.add("nothing")
+        else:
+            found.add(None)
+    return found.pop() if len(found) == 1 else None
+
+
+def agree(shown, picture, tries=400):
+    """Click on pixels of known colour: the selected sphere has that colour. Counts both kinds."""
+    rng = np.random.default_rng(3)
+    colors = shown.js("[...carom.scene.color]")
+    hits, misses, last = 0, 0, (0, 0)
+    for _ in range(tries):
+        x, y = int(rng.integers(230, 760)), int(rng.integers(80, 600))
+        seen = colour_at(picture, x, y, 1)
+        if seen == "nothing":
+            seen = colour_at(picture, x, y, 8)
+        if seen is None or math.hypot(x - last[0], y - last[1]) < 30:
+            continue
+        if (misses if seen == "nothing" else hits) >= 25:
+            continue
+        last = x, y
+        shown.page.mouse.click(x, y)
+        selected = shown.js("carom.hands.selected")
+        if seen == "nothing":
+            assert selected is None, (x, y)
+            misses += 1
+        else:
+            assert selected is not None, (x, y)
+            assert colors[selected] == COLORS[seen], (x, y, selected)
+            hits += 1
+    return hits, misses
+
+
+def test_a_click_selects_the_ball_whose_pixel_it_hits(show):
+    shown = show(crowd())
+    shown.settle()
+    hits, misses = agree(shown, pixels(shown.page.screenshot()))
+    assert hits >= 20
+    assert misses >= 5
+    shown.page.keyboard.press("Escape")
+    assert shown.js("carom.hands.selected") is None
+
+
+@pytest.mark.parametrize("world", [carom.Box, carom.Periodic])
+def test_it_agrees_at_moments_between_keyframes_too(show, world):
+    shown = show(crowd(2.0, world))
+    shown.page.get_by_role("slider", name="Speed").fill("30")  # long ways between keyframes
+    shown.wait("carom.timeline.newest?.t > 0.6")
+    shown.wait(
+        """() => {
+          const { timeline } = carom;
+          const [first, second] = timeline.keyframes.slice(-2);
+          if (second === undefined || second.t - first.t < 0.005) return false;
+          timeline.t = 0.35 * first.t + 0.65 * second.t;
+          timeline.advance = () => [first, second];
+          timeline.push = () => undefined;
+          return true;
+        }"""
+    )
+    shown.wait("carom.drawn.t === carom.timeline.t")
+    time.sleep(0.3)
+    hits, _ = agree(shown, pixels(shown.page.screenshot()), tries=250)
+    assert hits >= 15
+
+
+def pause_and_select(shown, i):
+    shown.settle()
+    shown.js(f"carom.hands.select({i})")
+    time.sleep(0.3)
+
+
+def handle(shown):
+    """Middle of the velocity's handle."""
+    box = shown.page.locator(".hand-handle").bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def test_a_drag_turns_and_selects_nothing_and_double_click_shows_everything(show):
+    shown = show(still_life())
+    shown.settle()
+    x, y, _ = where(shown, (-3, 0, 0))
+    mouse = shown.page.mouse
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x + 60, y, steps=4)
+    mouse.up()
+    assert shown.js("carom.hands.selected") is None
+    assert shown.js("carom.camera.moved") is True
+    x, y, _ = where(shown, (-3, 0, 0))
+    mouse.click(x, y)
+    assert shown.js("carom.hands.selected") == 0
+    time.sleep(0.5)
+    mouse.dblclick(330, 640)
+    assert shown.js("carom.camera.moved") is False
+    assert shown.js("carom.hands.selected") is None
+
+
+def test_a_finger_selects(show):
+    shown = show(still_life(), 390, 844, has_touch=True)
+    shown.settle()
+    x, y, _ = where(shown, (2.5, -2, -2))
+    shown.page.touchscreen.tap(x, y)
+    assert shown.js("carom.hands.selected") == 2
+
+
+def test_the_inspector_reads_the_engines_numbers(show):
+    scene = carom.Scene(
+        carom.Spheres.of(
+            [(-3, 0, 0), (3, 0, 0)], [(1, 0.5, -2), (0, 0, 0)], radius=[0.5, 1], mass=[2, 3],
+            fixed=[False, True],
+        ),
+        walls=(carom.Box(12, 12, 12),),
+    )  # fmt: skip
+    shown = show(carom.Simulation(scene))
+    shown.wait("carom.timeline.newest?.wallCollisions > 1")
+    shown.settle()
+    page = shown.page
+    page.keyboard.press("j")
+    page.locator("#inspector .vector").first.wait_for(state="visible")
+    time.sleep(0.3)
+    text = page.locator("#inspector").inner_text().replace("−", "-").replace("\u202f", "")
+    words = text.split()
+    sim = shown.sim
+    assert "Sphere 0" in text
+    at = words.index("Position")
+    assert [float(w) for w in words[at + 1 : at + 4]] == pytest.approx(sim.position[0], abs=1e-2)
+    at = words.index("Velocity")
+    assert [float(w) for w in words[at + 1 : at + 4]] == pytest.approx(sim.velocity[0], abs=1e-2)
+    assert float(words[words.index("Speed") + 1]) == pytest.approx(math.sqrt(5.25), abs=1e-2)
+    assert float(words[words.index("energy") + 1]) == pytest.approx(5.25, rel=1e-3)
+    assert float(words[words.index("Mass") + 1]) == 2
+    assert int(words[words.index("Collisions") + 1]) == sim.state.collision_count[0]
+    page.get_by_role("button", name="Next sphere").press("Enter")
+    time.sleep(0.3)
+    assert "fixed" in page.locator("#inspector").inner_text()
+    page.get_by_role("button", name="Previous sphere").click()
+    assert shown.js("carom.hands.selected") == 0
+    # It is not read more often than ten times a second.
+    changes = shown.js(
+        """() => new Promise((done) => {
+          let n = 0;
+          new MutationObserver((list) => (n += list.length)).observe(
+            document.querySelector("#inspector .vector"), { subtree: true, childList: true });
+          document.getElementById("play").click();
+          setTimeout(() => done(n), 1000);
+        })"""
+    )
+    assert 3 <= changes <= 3 * 11
+
+
+def test_following_keeps_the_ball_in_the_middle(show):
+    sim = carom.Simulation(walls=carom.Box(12, 12, 12))
+    sim.add((-4, 0, 0), velocity=(0.8, 0.3, 0.2), radius=0.6, color=GREEN)
+    sim.add((4, 4, 4), radius=0.6, color=RED)
+    shown = show(sim)
+    pause_and_select(shown, 0)
+    shown.page.keyboard.press("o")
+    shown.page.keyboard.press("Space")
+    start = shown.js("carom.timeline.t")
+    for k in range(2):
+        shown.wait(f"carom.timeline.t > {start + 1 + k}")
+        shown.settle()
+        shown.js("carom.camera.turn(0.3, 0.1)")
+        time.sleep(0.2)
+        x, y = shown.js("[carom.camera.middle.x, carom.camera.middle.y]")
+        assert np.argmax(around(shown, x, y).mean(axis=0)) == 1
+        place = shown.js("carom.camera.center")
+        assert place == pytest.approx(shown.sim.position[0], abs=1e-5)
+        shown.page.keyboard.press("Space")
+        shown.wait("carom.timeline.newest?.playing")
+    assert shown.js("carom.hands.following") is True
+    shown.page.keyboard.press("f")
+    assert shown.js("carom.hands.following") is False
+
+
+def test_the_trail_lies_behind_the_ball(show):
+    sim = carom.Simulation(walls=carom.Box(12, 12, 12))
+    sim.add((-4, 0, 0), velocity=(0.8, 0, 0.5), radius=0.6, color=GREEN)
+    shown = show(sim)
+    shown.wait("!!carom.scene")
+    shown.js("carom.hands.select(0)")
+    start = shown.js("carom.timeline.t")
+    shown.wait(f"carom.timeline.t > {start + 1}")
+    shown.settle()
+    points = np.reshape(shown.js("[...carom.hands.overlay().trails[0].points]"), (-1, 3))
+    assert len(points) >= 4
+    assert points[-1] == pytest.approx(shown.sim.position[0], abs=1e-5)
+    free = points[(points[:, 0] < 5.4) & (points[:, 2] < 5.4)]
+    assert free[:, 2] == pytest.approx(0.5 / 0.8 * (free[:, 0] + 4), abs=1e-5)
+    assert np.all(np.diff(free[:, 0]) > 0)
+    shown.page.keyboard.press("t")
+    assert shown.js("carom.hands.overlay().trails") == []
+
+
+def test_a_dragged_velocity_reaches_the_engine(show):
+    shown = show(still_life())
+    pause_and_select(shown, 1)
+    x, y = handle(shown)
+    ball = where(shown, (0, 2, 2))
+    assert (x, y) == pytest.approx(ball[:2], abs=1.5)  # at rest: no arrow yet
+    mouse = shown.page.mouse
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x + 70, y - 40, steps=5)
+    assert "speed" in shown.page.locator(".hand-label").filter(visible=True).inner_text()
+    mouse.up()
+    time.sleep(0.5)
+    velocity = shown.sim.velocity[1]
+    assert np.all(shown.sim.velocity[[0, 2]] == 0)
+    assert shown.sim.position[1] == pytest.approx((0, 2, 2))
+    # The arrow of this velocity ends where the mouse let go.
+    tip = np.array((0, 2, 2)) + velocity * shown.js("carom.hands.time")
+    assert where(shown, tip)[:2] == pytest.approx((x + 70, y - 40), abs=1.5)
+    # Across the view only: the ball was at rest.
+    back = np.array(shown.js("carom.camera.axes.back"))
+    assert abs(velocity @ back) < 1e-6 * np.linalg.norm(velocity)
+    # Now with a part along the view, which a drag does not show: it stays.
+    faster = (velocity + 0.4 * np.linalg.norm(velocity) * back).tolist()
+    shown.js(f"carom.connection.send(JSON.stringify({{op: 'push', index: 1, velocity: {faster}}}))")
+    shown.wait(f"Math.abs(carom.hands.handle.velocity[0] - ({faster[0]!r})) < 1e-5")
+    time.sleep(0.2)
+    x, y = handle(shown)
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x - 50, y - 30, steps=5)
+    mouse.up()
+    time.sleep(0.5)
+    assert handle(shown) == pytest.approx((x - 50, y - 30), abs=1.5)
+    assert shown.sim.velocity[1] @ back == pytest.approx(faster @ back, rel=1e-5)
+    assert np.linalg.norm(shown.sim.velocity[1] - faster) > 0.1
+    shown.page.locator(".hand-handle").press("ArrowUp")
+    time.sleep(0.4)
+    assert shown.sim.velocity[1] @ np.array(shown.js("carom.camera.axes.up")) > 0
+    shown.page.keyboard.press("Space")
+    shown.wait("carom.timeline.newest?.playing")
+    shown.page.locator(".hand-handle").wait_for(state="hidden")
+
+
+def start_adding(shown):
+    shown.settle()
+    shown.page.keyboard.press("a")
+    assert shown.js("carom.hands.mode") == "add"
+
+
+def test_a_ball_is_added_where_it_is_pressed_and_flies_where_it_is_thrown(show):
+    shown = show(still_life())
+    start_adding(shown)
+    radius, mass = shown.js("[carom.hands.next.radius, carom.hands.next.mass]")
+    assert (radius, mass) == pytest.approx((1, shown.sim.mass[0]))
+    mouse = shown.page.mouse
+    x, y = 430, 420
+    mouse.move(x, y)
+    mouse.down()
+    mouse.move(x + 90, y + 30, steps=5)
+    ghost = shown.js("carom.hands.overlay().ghost")
+    mouse.up()
+    shown.wait("carom.scene.n === 4")
+    time.sleep(0.3)
+    sim = shown.sim
+    assert sim.position[3] == pytest.approx(ghost["x"], abs=1e-5)
+    assert where(shown, sim.position[3])[:2] == pytest.approx((x, y), abs=1)
+    tip = sim.position[3] + sim.velocity[3] * shown.js("carom.hands.time")
+    assert where(shown, tip)[:2] == pytest.approx((x + 90, y + 30), abs=1)
+    assert sim.radius[3] == pytest.approx(radius)
+    assert sim.mass[3] == pytest.approx(mass)
+    assert rgb(sim.color[3]) / 255 == pytest.approx(ghost["color"], abs=0.01)
+    assert shown.js("carom.hands.mode") == "add"
+    mouse.move(5, 300)
+    shown.page.keyboard.press("Escape")
+    assert shown.js("carom.hands.mode") == "turn"
+    shown.js("carom.hands.next.ghost = null")
+    time.sleep(0.3)
+    middle = around(shown, x, y).mean(axis=0)
+    assert hue(middle) == pytest.approx(hue(rgb(sim.color[3])), abs=0.3)
+
+
+def test_what_does_not_fit_changes_nothing(show):
+    shown = show(still_life())
+    start_adding(shown)
+    x, y, _ = where(shown, (0, 0, 0))
+    shown.js("carom.hands.next.radius = 4.9")  # touches all three
+    said = shown.js(
+        """() => {
+          const { listener } = carom.connection;
+          const { note } = listener;
+          globalThis.said = [];
+          listener.note = (key, value) => {
+            if (key === "refused") globalThis.said.push(value);
+            note(key, value);
+          };
+          return globalThis.said;
+        }"""
+    )
+    assert said == []
+    shown.page.mouse.click(x, y)
+    shown.wait("globalThis.said.length === 1")
+    assert len(shown.sim) == 3
+    assert shown.js("carom.scene.n") == 3
+    assert shown.js("carom.hands.mode") == "add"
+
+
+def test_adding_by_keys_and_leaving_a_throw(show):
+    shown = show(still_life())
+    start_adding(shown)
+    mouse = shown.page.mouse
+    mouse.move(430, 420)
+    mouse.down()
+    mouse.move(500, 420, steps=3)
+    shown.page.keyboard.press("Escape")
+    mouse.up()
+    time.sleep(0.3)
+    assert len(shown.sim) == 3
+    assert shown.js("carom.hands.mode") == "add"
+    shown.page.locator("#view").press("Enter")
+    shown.wait("carom.scene.n === 4")
+    assert shown.sim.position[3] == pytest.approx(shown.js("carom.camera.center"), abs=1e-5)
+    assert np.all(shown.sim.velocity[3] == 0)
+
+
+def test_a_finger_adds(show):
+    shown = show(still_life(), 390, 844, has_touch=True)
+    start_adding(shown)
+    x, y, _ = where(shown, (0, -2, 2.5))
+    touch = shown.page.context.new_cdp_session(shown.page)
+
+    def finger(kind, *points):
+        touch.send(
+            "Input.dispatchTouchEvent",
+            {"type": kind, "touchPoints": [{"x": x, "y": y} for x, y in points]},
+        )
+
+    finger("touchStart", (x, y))
+    finger("touchMove", (x + 30, y - 10))
+    finger("touchMove", (x + 40, y - 20))
+    finger("touchEnd")
+    shown.wait("carom.scene.n === 4")
+    assert where(shown, shown.sim.position[3])[:2] == pytest.approx((x, y), abs=1)
+    tip = shown.sim.position[3] + shown.sim.velocity[3] * shown.js("carom.hands.time")
+    assert where(shown, tip)[:2] == pytest.approx((x + 40, y - 20), abs=1)
+
+
+def test_deleting_the_selected_ball(show):
+    shown = show(still_life())
+    pause_and_select(shown, 1)
+    shown.page.keyboard.press("Delete")
+    shown.wait("carom.scene.n === 2 && carom.hands.sides.length > 0")
+    assert [int(c) for c in shown.sim.color] == [RED, BLUE]
+    assert shown.js("carom.hands.selected") is None
+    shown.page.keyboard.press("Delete")  # nothing selected: nothing happens
+    x, y, _ = where(shown, (-3, 0, 0))
+    shown.page.mouse.click(x, y)
+    assert shown.js("carom.hands.selected") == 0
+    shown.page.get_by_role("button", name="Delete this sphere").click()
+    shown.wait("carom.scene.n === 1")
+    assert [int(c) for c in shown.sim.color] == [BLUE]
+
+
+def test_a_step_flashes_both_balls_and_shows_the_impulse(show):
+    sim = carom.Simulation(walls=carom.Box(12, 12, 12))
+    sim.add((-3, 0, 0), velocity=(1, 0, 0), radius=1, color=GREEN)
+    sim.add((2, 0, 0), radius=1, color=RED)
+    shown = show(sim)
+    shown.settle()
+    shown.js("carom.connection.send(JSON.stringify({op: 'step'}))")
+    shown.wait("carom.hands.overlay().marks.length === 2")
+    overlay = shown.js("carom.hands.overlay()")
+    centers = sorted(mark["x"][0] for mark in overlay["marks"])
+    assert centers == pytest.approx([0, 2], abs=1e-5)
+    (arrow,) = overlay["arrows"]
+    assert arrow["from"] == pytest.approx([1, 0, 0], abs=1e-5)
+    assert abs(arrow["to"][0] - 1) > 1
+    shown.page.keyboard.press("Space")
+    shown.wait("carom.hands.overlay().marks.length === 0")
+
+
+def test_beside_ticks_a_click_selects_on_its_side_and_changes_nothing(show):
+    shown = show(still_life())
+    shown.settle()
+    shown.page.keyboard.press("x")
+    shown.wait("carom.hands.sides.length === 2")
+    x, y = shown.js(
+        """(() => {
+          const { viewport } = carom.hands.sides[1];
+          const place = carom.camera.project([-3, 0, 0]);
+          return [place.x + viewport.x, place.y + viewport.y];
+        })()"""
+    )
+    shown.page.mouse.click(x, y)
+    assert shown.js("[carom.hands.selected, carom.hands.side]") == [0, 1]
+    sides = [mark["side"] for mark in shown.js("carom.hands.overlay().marks")]
+    assert sorted(sides) == [0, 1]
+    shown.page.locator(".sphere-title").filter(has_text="in ticks").wait_for(state="visible")
+    assert shown.page.locator(".hand-handle").is_hidden()
