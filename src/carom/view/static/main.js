@@ -139,6 +139,7 @@ class Page {
     this.controls.openPanel(true);
     const section = /** @type {HTMLDetailsElement} */ (at("section-settings"));
     section.open = true;
+    section.scrollIntoView();
     section.querySelector("input")?.focus();
   }
 
