@@ -19,6 +19,7 @@ from carom.view import LiveView
 IMAGES = Path(__file__).parent / "images"
 GALLERY = Path(carom.__file__).parent / "view" / "static" / "gallery"
 SOFTWARE_GL = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+CLOSER = 0.95  #: than a fit, which leaves a margin for panels
 LARGEST = 25_000  #: bytes of a picture of the gallery
 #: Seconds until a scene looks most like itself.
 MOMENTS = {"bounce": 1.0, "break-shot": 2.5, "newton-cradle": 1.2, "two-balls": 2.0}
@@ -28,6 +29,7 @@ SMALL = """async () => {
   const { camera, canvas, renderer, actions } = carom;
   camera.resize(canvas.clientWidth, canvas.clientHeight, { left: 0, right: 0, top: 0, bottom: 0 });
   actions.fit();
+  camera.zoom(CLOSER);
   camera.finish();
   const wait = () => new Promise((done) => requestAnimationFrame(done));
   for (let k = 0; k < 3; k++) {
@@ -59,7 +61,8 @@ def card(browser: Browser, name: str) -> None:
         time.sleep(MOMENTS.get(name, 3.0))
         page.evaluate("carom.timeline.newest.playing && carom.actions.toggle()")
         for quality in (0.9, 0.8, 0.7, 0.5):
-            data = base64.b64decode(page.evaluate(SMALL.replace("QUALITY", str(quality))))
+            script = SMALL.replace("QUALITY", str(quality)).replace("CLOSER", str(CLOSER))
+            data = base64.b64decode(page.evaluate(script))
             if len(data) <= LARGEST:
                 break
         page.close()

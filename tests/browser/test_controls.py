@@ -234,12 +234,13 @@ def test_colours_by_collisions_grow_with_them(show):
 def test_sections_stay_as_they_were_left(show):
     shown = show(still_life())
     page = shown.page
-    page.locator("#section-numbers summary").click()
     page.locator("#section-look summary").click()
+    page.locator("#section-settings summary").click()
+    shown.wait("localStorage.length >= 2")
     page.reload()
     shown.wait("!!globalThis.carom?.timeline.newest")
-    assert page.locator("#n").is_hidden()
-    assert page.get_by_role("switch", name="Velocity arrows").is_visible()
+    assert page.get_by_role("radio", name="Wire").is_hidden()
+    assert page.get_by_role("slider", name="Restitution of spheres").is_visible()
 
 
 def test_dark_light_and_as_the_system_is(show):

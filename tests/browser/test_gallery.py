@@ -30,9 +30,9 @@ def test_a_card_loads_its_scene(show):
     dialog.wait_for(state="visible")
     shown.wait("document.querySelectorAll('#gallery .cards button').length > 0")
     assert dialog.locator(".cards button").count() == len(scenes.names())
-    shown.wait(
-        "[...document.querySelectorAll('#gallery img')].every((i) => !i.complete || i.naturalWidth)"
-    )
+    # Those that were looked at have come; the others wait until they are scrolled to.
+    loaded = "[...document.querySelectorAll('#gallery img')].filter((i) => i.naturalWidth === 320)"
+    shown.wait(f"{loaded}.length >= 8")
     card = dialog.locator("button[data-name=newton-cradle]")
     assert scenes.describe("newton-cradle") in card.inner_text()
     card.focus()
@@ -57,7 +57,8 @@ def test_a_scene_of_ones_own_has_an_icon(show):
     shown = show(still_life())
     shown.wait("carom.gallery.entries.length > 0")
     shown.js(
-        """carom.gallery.setCatalogue([{ name: "mine", title: "Mine", description: "", options: [] }]);
+        """carom.gallery.setCatalogue(
+             [{ name: "mine", title: "Mine", description: "", options: [] }]);
            carom.actions.gallery()"""
     )
     shown.wait("document.querySelector('#gallery img')?.naturalWidth > 0")

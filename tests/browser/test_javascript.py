@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import subprocess
 from importlib import resources
@@ -47,6 +48,21 @@ NAMES = sorted(
 @pytest.mark.parametrize("name", NAMES)
 def test_modules(name):
     node(f"{name}.test.mjs")
+
+
+def test_the_page_asks_for_all_its_modules_at_once():
+    """A module that is found only inside another comes one journey later."""
+    static = resources.files("carom.view") / "static"
+    found, waiting = set(), ["main.js"]
+    while waiting:
+        text = (static / (name := waiting.pop())).read_text(encoding="utf-8")
+        new = set(re.findall(r'from "\./(\w+\.js)"', text)) - found - {name}
+        found |= new
+        waiting += new
+    page = (static / "index.html").read_text(encoding="utf-8")
+    assert set(re.findall(r'rel="modulepreload" href="/(\w+\.js)"', page)) == found
+    for name in re.findall(r'(?:href|src)="/(\w+\.\w+)"', page):
+        assert (static / name).is_file(), name
 
 
 def test_protocol_on_both_sides(tmp_path):

@@ -290,17 +290,20 @@ def test_pinch_zooms_and_one_finger_turns(show):
 
 def test_keyboard_reaches_everything_and_all_is_labelled(show):
     shown = show(still_life())
+    wanted = {"view", "title-button", "restart", "step", "play", "reverse", "speed", "add", "fit"}
+    wanted |= {"gallery-button", "compare", "share-button", "panel-toggle", "own", "solid"}
     names = set()
-    for _ in range(14):
+    for _ in range(40):
         shown.page.keyboard.press("Tab")
         names.add(shown.js("document.activeElement.id || document.activeElement.value"))
-    assert names >= {"view", "own", "solid", "restart", "play", "speed", "fit", "panel-toggle"}
+    assert names >= wanted
     unnamed = shown.js(
-        """[...document.querySelectorAll("button, input, canvas")].filter((element) =>
-             !element.getAttribute("aria-label") && !element.closest("label")?.textContent.trim()
-           ).length"""
+        """[...document.querySelectorAll("button, input, textarea, canvas")].filter((element) =>
+             !element.getAttribute("aria-label") && !element.textContent.trim() &&
+             ![...(element.labels ?? [])].some((label) => label.textContent.trim())
+           ).map((element) => element.outerHTML)"""
     )
-    assert unnamed == 0
+    assert unnamed == []
 
 
 def test_the_token_leaves_the_address_and_survives_a_reload(show):

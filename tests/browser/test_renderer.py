@@ -155,9 +155,9 @@ def test_a_mark_is_a_ring_outside_the_sphere(draw):
 
 def test_a_trail_fades_towards_the_past_and_has_gaps(draw):
     look = [[0, -20, 0], [0, 0, 0]]
-    points = [[-3 + 0.5 * k, 0, 2] for k in range(5)] + [[None] * 3]
-    points += [[0.5 + 0.5 * k, 0, 2] for k in range(6)]
-    trail = {"side": 0, "points": sum(points, []), "color": [1, 0.8, 0.1]}
+    xs = [-3 + 0.5 * k for k in range(13)]
+    points = [part for x in xs for part in ([None] * 3 if x == -0.5 else [x, 0, 2])]
+    trail = {"side": 0, "points": points, "color": [1, 0.8, 0.1]}
     plain = draw([(0, 0, -2)], look=look)
     drawn = draw([(0, 0, -2)], look=look, trails=[trail])
     old, gap, new = (

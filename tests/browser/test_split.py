@@ -37,7 +37,7 @@ def test_ticks_miss_collisions_and_the_page_counts_them(show):
     assert number(ticks.locator("dt:text('deepest overlap') + dd").inner_text()) > 0
     assert shown.js("carom.timeline.newest.missed") == 0
     page.keyboard.press("Escape")
-    page.locator("#comparison").wait_for(state="hidden")
+    page.locator("#comparison .side").last.wait_for(state="hidden")
     assert shown.js("carom.viewports.length") == 1
 
 

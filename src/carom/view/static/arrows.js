@@ -140,7 +140,7 @@ export class Arrows {
     const { gl, count } = this;
     const { pair, about, theme, level } = look;
     const { n, typical } = pair.traits;
-    const program = this.programs.get("swarm", { SHADOWS: level.shadow > 0 });
+    const program = this.programs.get("swarm", { SHADOWS: "uShadow" in look.shadow });
     program.use();
     program.set(look.common);
     program.set(look.motion);
@@ -160,7 +160,7 @@ export class Arrows {
     const { gl, count } = this;
     for (const { side, from, to, color } of list) {
       if (side !== look.side) continue;
-      const program = this.programs.get("one", { SHADOWS: look.level.shadow > 0 });
+      const program = this.programs.get("one", { SHADOWS: "uShadow" in look.shadow });
       program.use();
       program.set(look.common);
       program.set(look.shadow);

@@ -93,5 +93,8 @@ export function announce(sentence) {
 /** @param {Element} button @param {string} title with the key in brackets */
 function name(button, title) {
   /** @type {HTMLElement} */ (button).title = title;
-  button.setAttribute("aria-label", title.replace(/ \([^)]*\)$/, ""));
+  // The scene's title is a button too, and must be read as what it says.
+  if (button.id !== "title-button") {
+    button.setAttribute("aria-label", title.replace(/ \([^)]*\)$/, ""));
+  }
 }

@@ -122,16 +122,25 @@ float lines(float f, float width) {
   return mix(line, average, smoothstep(0.6, 1.4, slope));
 }
 
-// n: unit normal in the world, poles along z; \`every\` degrees. Two of three meridians end
-// before the poles, where they would run together.
-float wire(vec3 n, float every, float width) {
-  float k = 180.0 / every;
+// z = (cos a, sin a) to the power n: (cos na, sin na), without a sine.
+vec2 turned(vec2 z, int n) {
+  vec2 result = vec2(1, 0);
+  for (; n > 0; n >>= 1) {
+    if ((n & 1) == 1) result = vec2(result.x * z.x - result.y * z.y, result.x * z.y + result.y * z.x);
+    z = vec2(z.x * z.x - z.y * z.y, 2.0 * z.x * z.y);
+  }
+  return result;
+}
+
+// n: unit normal in the world, poles along z; 3 \`third\` lines to a half circle. Two of three
+// meridians end before the poles, where they would run together.
+float wire(vec3 n, int third, float width) {
   float round = length(n.xy);
-  float angle = atan(n.y, n.x);
-  float meridians = lines(sin(k * angle), width) * smoothstep(0.34, 0.42, round);
-  float few = lines(sin(k / 3.0 * angle), width) * smoothstep(0.0, 0.12, round);
-  float parallels = lines(sin(k * atan(n.z, max(round, 1e-6))), width);
-  return max(max(meridians, few), parallels);
+  vec2 few = turned(n.xy / max(round, 1e-6), third);
+  float meridians = lines(turned(few, 3).y, width) * smoothstep(0.34, 0.42, round);
+  float all = lines(few.y, width) * smoothstep(0.0, 0.12, round);
+  float parallels = lines(turned(vec2(round, n.z), 3 * third).y, width);
+  return max(max(meridians, all), parallels);
 }
 `;
 

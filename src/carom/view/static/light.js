@@ -64,16 +64,16 @@ float lampSeen(vec3 p) {
   vec3 at = (uToLamp * vec4(p, 1)).xyz;
   if (any(lessThan(at, vec3(0))) || any(greaterThan(at, vec3(1)))) return 1.0;
   const vec2 disc[${TAPS}] = vec2[](${DISC.join(", ")});
-  // Turned from pixel to pixel (J. Jimenez's gradient noise), or the places would show as rings.
-  float turn = 6.2831853 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
-  mat2 turned = mat2(cos(turn), sin(turn), -sin(turn), cos(turn));
   vec2 search = uSoft + 0.12 * uWiden;
   float casters = 0.0, between = 0.0;
-  for (int k = 0; k < ${TAPS}; k += 3) {
-    float gap = at.z - texture(uDepth, at.xy + search * (turned * disc[k])).r;
+  for (int k = 0; k < ${TAPS}; k += 2) {
+    float gap = at.z - texture(uDepth, at.xy + search * disc[k]).r;
     if (gap > 0.0) { casters += 1.0; between += gap; }
   }
   if (casters == 0.0) return 1.0;
+  // Turned from pixel to pixel (J. Jimenez's gradient noise), or the places would show as rings.
+  float turn = 6.2831853 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+  mat2 turned = mat2(cos(turn), sin(turn), -sin(turn), cos(turn));
   vec2 wide = uSoft + uWiden * min(between / casters, 0.3);
   float sum = 0.0;
   for (int k = 0; k < ${TAPS}; k++) sum += texture(uShadow, vec3(at.xy + wide * (turned * disc[k]), at.z));

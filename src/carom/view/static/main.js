@@ -139,6 +139,7 @@ class Page {
     this.controls.openPanel(true);
     const section = /** @type {HTMLDetailsElement} */ (at("section-settings"));
     section.open = true;
+    section.scrollIntoView();
     section.querySelector("input")?.focus();
   }
 
@@ -163,7 +164,8 @@ class Page {
     this.timeline.clear();
     this.twin.clear();
     const { about } = scene;
-    const fresh = before === null || before.about.key !== about.key;
+    // Keys of another program, which took over the port, begin anew; its title differs.
+    const fresh = before?.about.key !== about.key || before.about.title !== about.title;
     // Another number of balls in the same scene is no reason to change its colours.
     const other = fresh && (about.origin === null || before?.about.origin?.name !== about.origin.name);
     if (fresh) this.camera.stand(/** @type {[number, number, number]} */ (about.gravity));
@@ -206,7 +208,10 @@ class Page {
       this.gallery.setCatalogue(note.catalogue);
       this.parameters.setCatalogue(note.catalogue);
     }
-    if (note.role !== undefined) document.body.dataset.role = note.role;
+    if (note.role !== undefined) {
+      document.body.dataset.role = note.role;
+      at("watching").hidden = note.role !== "watch";
+    }
     if (note.refused !== undefined) {
       toast(note.refused);
       this.laws.revert();
@@ -322,7 +327,8 @@ class Page {
   }
 
   /** The picture as a file, in its middle what the page shows beside its panels. */
-  #photo() {
+  async #photo() {
+    while (this.renderer.picture === null) await new Promise((go) => requestAnimationFrame(go));
     const { insets } = this.camera;
     this.camera.insets = { left: 0, right: 0, top: 0, bottom: 0 };
     const file = this.renderer.toBlob();

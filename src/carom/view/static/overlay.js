@@ -197,7 +197,7 @@ export class Overlay {
   ghost(look, ghost) {
     if (ghost === null || ghost.side !== look.side) return;
     const { gl } = this;
-    const program = this.programs.get("ghost", { SHADOWS: look.level.shadow > 0 });
+    const program = this.programs.get("ghost", { SHADOWS: "uShadow" in look.shadow });
     const { x, radius, color } = ghost;
     program.use();
     program.set(look.common);

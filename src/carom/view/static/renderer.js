@@ -69,6 +69,7 @@ import { buildWalls } from "./walls.js";
 
 /** @type {Uniforms} */
 const NO_SHADOWS = {};
+const DENSE = 5; // spheres on a ray's way, from which single shadows are lost among the others
 
 export class Renderer {
   /** @param {HTMLCanvasElement} canvas its pixels are the renderer's to choose, its size the page's */
@@ -122,8 +123,8 @@ export class Renderer {
 
   /** Draw a picture of the scene that was set. @param {Picture} picture */
   draw(picture) {
-    this.#draw(picture, this.governor.level, devicePixelRatio);
     const started = performance.now();
+    this.#draw(picture, this.governor.level, devicePixelRatio);
     requestAnimationFrame(() => this.governor.took(performance.now() - started));
   }
 
@@ -178,13 +179,7 @@ export class Renderer {
     const { gl, room, arrows, overlay } = this;
     const look = this.#look(picture, side, level, ratio);
     const { options } = picture;
-    if (level.shadow > 0 && !options.wire) {
-      const { second } = picture.sides[side];
-      const scene = /** @type {Scene} */ (this.scene);
-      const crowd = this.crowds[side].uniforms(second, scene, picture.camera.up, look.eyeToWorld);
-      look.shadow = { ...this.shadows.cast(look, this.walls), ...crowd };
-      this.frame.bind();
-    }
+    if (level.shadow > 0 && !options.wire) this.#shade(look, picture.sides[side].second);
     const [x, y, width, height] = look.common.uPort;
     gl.viewport(x, y, width, height);
     gl.scissor(x, y, width, height);
@@ -206,6 +201,16 @@ export class Renderer {
     overlay.ghost(look, picture.ghost);
     room.before(look);
     overlay.marks(look, picture.marks);
+  }
+
+  /** What takes light away, besides a thing's own shape. @param {Look} look @param {Keyframe} keyframe */
+  #shade(look, keyframe) {
+    const crowd = this.crowds[look.side];
+    const scene = /** @type {Scene} */ (this.scene);
+    look.shadow = crowd.uniforms(keyframe, scene, look.camera.up, look.eyeToWorld);
+    if (look.crowded > DENSE) return;
+    Object.assign(look.shadow, this.shadows.cast(look, this.walls));
+    this.frame.bind();
   }
 
   /**

@@ -58,8 +58,20 @@ void main() {
 
 /** The inside of a spherical wall as wires: one side per pass, so that spheres lie between. */
 const SHELL_VERTEX = `
+${RAY}
+uniform mat4 uView;
+uniform float uRadius;
+
 void main() {
-  gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0, 1);
+  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
+  vec3 c = uView[3].xyz;
+  float d = length(c), reach = uRadius / sqrt(max(1.0 - uRadius * uRadius / (d * d), 1e-4));
+  gl_Position = vec4(corner, 0, 1);            // the whole picture, if the eye is inside or near
+  if (d < 1.1 * uRadius || -c.z < 1.1 * reach) return;
+  reach += 1.5 * pixelAt(d);
+  vec3 across = normalize(cross(c, abs(c.y) < 0.9 * d ? vec3(0, 1, 0) : vec3(1, 0, 0)));
+  gl_Position = uProjection * vec4(c + reach * (corner.x * across + corner.y * cross(across, c / d)), 1);
+  gl_Position.z = 0.0;
 }
 `;
 
@@ -80,7 +92,7 @@ void main() {
   float half_ = sqrt(max(uRadius * uRadius - off2, 0.0));
   float t = along + uSide * half_;
   vec3 n = (off + uSide * ray * half_) / max(uRadius, sqrt(off2));
-  float line = wire(transpose(mat3(uView)) * n, 10.0, uLine);
+  float line = wire(transpose(mat3(uView)) * n, 6, uLine);
   float inside = (uRadius - sqrt(off2)) / pixelAt(max(along, 1e-3 * uRadius));
   float coverage = along > 0.0 || off2 < uRadius * uRadius ? clamp(inside + 0.5, 0.0, 1.0) : 0.0;
   if (coverage <= 0.0 || t <= 0.0) discard;
@@ -91,7 +103,6 @@ void main() {
   float strength = mix(0.20, 0.62, near);
   float alpha = coverage * max(strength * max(line, 0.9 * outline), 0.07 * edge * edge);
   color = vec4(uColor * alpha, alpha);
-  gl_FragDepth = 0.5 + 0.5 * depthAt(t);
 }
 `;
 
@@ -175,7 +186,7 @@ export class Room {
     const { gl } = this;
     const { theme, camera, level, options } = look;
     const walls = /** @type {Walls} */ (this.walls);
-    const program = this.programs.get("face", { SHADOWS: level.shadow > 0 && !options.wire });
+    const program = this.programs.get("face", { SHADOWS: "uShadow" in look.shadow });
     walls.faces.forEach((face, k) => {
       const endless = face.fade > 0;
       if (dot(face.normal, sub(look.eye, face.center)) <= 0 && !endless) return;
@@ -213,7 +224,9 @@ export class Room {
 
   /** What lies in front of all spheres. @param {Look} look */
   before(look) {
+    this.gl.disable(this.gl.DEPTH_TEST);
     this.#shells(look, -1);
+    this.gl.enable(this.gl.DEPTH_TEST);
   }
 
   /** @param {Look} look @param {1 | -1} side */
@@ -225,7 +238,7 @@ export class Room {
       program.set(look.common);
       program.set({ uRadius: radius, uSide: side, uColor: look.theme.shell });
       gl.bindVertexArray(this.empty);
-      gl.drawArrays(gl.TRIANGLE_STRIP, 0, 3);
+      gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
     }
   }
 }
