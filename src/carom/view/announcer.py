@@ -14,7 +14,6 @@ from carom.view.viewable import Viewable
 
 METERS_EVERY = 0.1  #: seconds between readings of the energies, which read all spheres again
 WALLS_EVERY = 0.25  #: seconds between readings of the pressures
-STRETCH = 10.0  #: seconds at speed 1 over which a pressure is averaged
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,12 +123,11 @@ class Announcer:
             return
         self._walls_at = clock
         pressure = stage.pressure
-        theory = pressure.theory(self._readings[0].temperature)
         self._note(
             "walls",
             {
-                "pressure": [_finite(each) for each in pressure.pressure],
-                "theory": theory if theory is None else _finite(theory),
+                "pressure": [p if math.isfinite(p) else None for p in pressure.pressure.tolist()],
+                "theory": pressure.theory(self._readings[0].temperature),
                 "duration": pressure.duration,
             },
         )
@@ -148,8 +146,3 @@ def _reading(sim: Viewable, compared: bool) -> Reading:
         # It looks at all neighbours, so only where it is shown.
         overlap=sim.max_overlap if compared else 0.0,
     )
-
-
-def _finite(value: float) -> float:
-    """JSON has no other numbers."""
-    return float(value) if math.isfinite(value) else 0.0

@@ -27,7 +27,7 @@ role      once, note          "control" or "watch"
 failure   note                a sentence, "" when all is well again
 settings  note                restitution, wall_restitution, contact_time, gravity, comparing, tick
 event     note                the collision that a step has led to: t, i, j, impulse, serial
-walls     note                pressure of each wall, theory, duration averaged over
+walls     note                pressure of each wall (null: endless), theory, duration averaged
 refused   answer              a sentence: why a command could not be done
 source    answer              python, toml, command: the simulation as text
 ========= =================== ==================================================================

@@ -16,6 +16,7 @@ from carom.view.viewable import Viewable
 
 MOST_SPHERES = 200_000  #: that a page may ask for; more are for the command line
 MOST_COMPARED = 500  #: the tick method looks at all pairs, in Python
+STRETCH = 20.0  #: seconds at speed 1 over which pressures are averaged
 SEARCH = 3.0  #: seconds of the clock in which a step must find the next collision
 
 Look = Callable[[object], None]
@@ -57,7 +58,7 @@ class Stage:
         self._serial = 0
         self._at_collision = False
         self._history = History()
-        self.pressure = WallPressure(sim.world, sim.state)
+        self.pressure = self._gauge()
         self._actions: dict[str, Callable[..., None]] = {
             "restart": self.restart,
             "step": self._step,
@@ -226,7 +227,7 @@ class Stage:
     def _gravity(self, value: tuple[float, float, float]) -> None:
         for sim in self.shown:
             sim.gravity = value
-        self.pressure = WallPressure(self.sim.world, self.sim.state)
+        self.pressure = self._gauge()
 
     def _load(self, name: str, options: dict[str, Any]) -> None:
         """Show another scene of the library."""
@@ -300,6 +301,9 @@ class Stage:
             self.twin = self.sim.in_ticks()
         self._jump(forget=True)
 
+    def _gauge(self) -> WallPressure:
+        return WallPressure(self.sim.world, self.sim.state, STRETCH * self.sim.pace)
+
     def _jump(self, *, forget: bool = False) -> None:
         """Take note that the motion does not go on from where it was."""
         self.epoch += 1
@@ -307,4 +311,4 @@ class Stage:
         self._at_collision = self._at_collision and not forget
         if forget:
             self._history.clear()
-        self.pressure = WallPressure(self.sim.world, self.sim.state)
+        self.pressure = self._gauge()

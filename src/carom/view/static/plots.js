@@ -19,7 +19,7 @@ const AXES = ["x", "y", "z"];
 /**
  * @typedef {import("./protocol.js").Keyframe} Keyframe
  * @typedef {import("./protocol.js").Scene} Scene
- * @typedef {{pressure: number[], theory: number | null, duration: number}} Walls
+ * @typedef {import("./protocol.js").Notes["walls"]} Walls
  * @typedef {import("./section.js").Series} Series
  */
 
@@ -262,15 +262,15 @@ export class Plots {
   #drawPressure(section) {
     const walls = this.scene?.about.walls ?? [];
     const { pressure, theory, duration } = this.pressure ?? { pressure: [], theory: null, duration: 0 };
-    if (pressure.length !== walls.length || !pressure.some((part) => part > 0)) {
-      return section.empty("Waiting for spheres to meet walls.");
-    }
     const names = briefly(walls.map(({ name }) => name));
-    const all = pressure.map((value, k) => ({ name: names[k], value }));
+    const all = pressure.flatMap((value, k) => (value === null ? [] : [{ name: names[k], value }]));
+    if (pressure.length !== walls.length || !all.some(({ value }) => value > 0)) {
+      return section.empty("Waiting for spheres to meet walls that have an end.");
+    }
     const bars = all.slice(0, MOST_WALLS);
     section.canvas.style.setProperty("height", `${barsHeight(bars.length)}px`);
     drawBars(section.canvas, bars, { color: "--plot-bars", label: "pressure", theory });
-    const mean = pressure.reduce((sum, part) => sum + part, 0) / pressure.length;
+    const mean = all.reduce((sum, { value }) => sum + value, 0) / all.length;
     /** @type {Series[]} */ const series = [{ name: "mean", color: "--plot-bars", value: short(mean) }];
     if (theory !== null) {
       series.push({ name: "theory", color: "--plot-theory", dash: true, value: short(theory) });

@@ -98,7 +98,8 @@
  * @property {string} failure
  * @property {Settings} settings
  * @property {Collision} event
- * @property {{pressure: number[], theory: number | null, duration: number}} walls
+ * @property {{pressure: (number | null)[], theory: number | null, duration: number}} walls
+ *   null for a wall without end
  * @property {string} refused
  * @property {{python: string, toml: string, command: string}} source
  */
