@@ -26,7 +26,7 @@ const MODES = { own: 0, energy: 1, speed: 2, species: 3, collisions: 4 };
 const POINTS_FROM = 2000; // spheres; fewer are drawn as quads, which have no largest size
 const LARGEST_POINT = 96; // pixels
 const FAR = 14; // pixels of radius, below which all rays to a sphere count as parallel
-const FEW = 300; // spheres whose outlines are always smooth
+const FEW = 60; // spheres whose outlines are always smooth
 const IMAGE = 9; // the attribute's place
 
 const VERTEX = `
