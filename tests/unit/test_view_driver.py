@@ -242,7 +242,7 @@ def test_of_many_wishes_of_a_slider_the_last_counts():
     assert page.note("settings")["gravity"] == [0, 0, -1.99]
 
 
-def test_the_twin_follows_to_the_same_moments():
+def test_the_twin_follows_tick_by_tick():
     sim = carom.Simulation(scenes.phase_3())
     with Watcher(sim) as page:
         page.wait_for(lambda head: head["t"] > 20)
@@ -251,7 +251,7 @@ def test_the_twin_follows_to_the_same_moments():
         exact, ticks = (FRAME_HEADER.unpack_from(f) for f in page.snapshots[-1].frames)
         names = [*(name for name, _ in HEADER), *METERS]
         exact, ticks = (dict(zip(names, frame, strict=True)) for frame in (exact, ticks))
-        assert exact["t"] == ticks["t"]
+        assert 0 <= exact["t"] - ticks["t"] <= 1  # the last whole tick
         assert (exact["flags"], ticks["flags"]) == (1, 5)
         assert exact["epoch"] == ticks["epoch"]
         page.wait_for(lambda head: head["collisions"] > 30)

@@ -203,13 +203,16 @@ def test_the_ticks_start_where_the_exact_motion_starts():
     assert np.array_equal(exact.position, start.position)
     assert np.array_equal(ticks.position, start.position)
     assert stage.settings()["tick"] == 1
-    play(stage, 400)
-    assert ticks.time == exact.time
+    play(stage, 400, slices=333)
+    assert 0 <= exact.time - ticks.time <= ticks.tick
+    whole = carom.Simulation(scenes.phase_4()).in_ticks()
+    whole.run(until=400)
+    assert np.array_equal(ticks.position, whole.position)
     assert abs(exact.energy_drift) < 1e-13
     assert ticks.missed > 0
     act(stage, "step")
     act(stage, "back")
-    assert stage.sim.time == stage.twin.time
+    assert 0 <= stage.sim.time - stage.twin.time <= 1
     with pytest.raises(InputError, match="leave the comparison"):
         act(stage, "remove", index=0)
     act(stage, "compare", on=False)

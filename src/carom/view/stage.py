@@ -56,6 +56,7 @@ class Stage:
         self.event: dict[str, Any] | None = None
         self._stopping = stopping
         self._serial = 0
+        self._twin_start = 0.0
         self._at_collision = False
         self._history = History()
         self.pressure = self._gauge()
@@ -104,7 +105,7 @@ class Stage:
     # Time goes on.
 
     def run(self, duration: float, look: Look) -> None:
-        """Let time run; the ticks follow to the same moment."""
+        """Let time run; the ticks follow as far as whole ticks go."""
         self._history.note(self._mark)
         self._at_collision = self._at_collision and duration == 0
         self._advance(look, duration=duration)
@@ -115,8 +116,12 @@ class Stage:
             self.sim.run(**goal, progress=look)
         finally:
             self.pressure.add(self.sim.events, self.sim.time - before)
-            if self.twin is not None and self.twin.time < self.sim.time:
-                self.twin.run(until=self.sim.time)
+            if self.twin is not None:
+                # Whole ticks only: a shorter one would be another method.
+                ticks = math.floor((self.sim.time - self._twin_start) / self.twin.tick + 1e-9)
+                end = self._twin_start + ticks * self.twin.tick
+                if end > self.twin.time:
+                    self.twin.run(until=end)
 
     @property
     def _count(self) -> int:
@@ -299,6 +304,7 @@ class Stage:
         if on:
             self.restart()
             self.twin = self.sim.in_ticks()
+            self._twin_start = self.twin.time
         self._jump(forget=True)
 
     def _gauge(self) -> WallPressure:
