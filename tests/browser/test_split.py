@@ -28,8 +28,8 @@ def test_ticks_miss_collisions_and_the_page_counts_them(show):
     shown.wait("carom.twin.newest?.missed > 3", 20)
     time.sleep(0.4)
     exact, ticks = page.locator("#comparison .side").all()
-    assert "exact" in exact.inner_text()
-    assert "ticks of 0.0" in ticks.inner_text()
+    assert "Exact" in exact.inner_text()
+    assert "Ticks of 0.0" in ticks.inner_text()
     missed = [side.locator("dt:text('missed') + dd").inner_text() for side in (exact, ticks)]
     assert number(missed[0]) == 0
     assert number(missed[1]) > 3

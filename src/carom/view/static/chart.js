@@ -89,9 +89,9 @@ const BOTTOM = 33; // below, for the numbers and the label of the x axis
 const RIGHT = 10;
 const FINEST = 3; // pixels of the screen per css pixel
 
-/** A canvas cleared, with css pixels as its unit, or more where the page's text is large, and the page's colours. @param {HTMLCanvasElement} canvas */
+/** A canvas cleared, with css pixels as its unit, or more as the page's text is larger, and the page's colours. @param {HTMLCanvasElement} canvas */
 function begin(canvas) {
-  const zoom = Math.max(1, parseFloat(getComputedStyle(document.documentElement).fontSize) / SMALL);
+  const zoom = parseFloat(getComputedStyle(document.documentElement).fontSize) / SMALL;
   const [width, height] = [canvas.clientWidth / zoom, canvas.clientHeight / zoom];
   const ratio = Math.min(devicePixelRatio, FINEST) * zoom;
   const size = [Math.round(width * ratio), Math.round(height * ratio)];
@@ -238,8 +238,8 @@ function drawLine({ pen, paint }, line, px, py) {
 const ROW = 20; // css pixels of a bar and its name
 const HEAD = 2;
 
-/** Height of a picture of so many bars. @param {number} n */
-export const barsHeight = (n) => HEAD + n * ROW + BOTTOM;
+/** Height of a picture of so many bars, for CSS. @param {number} n */
+export const barsHeight = (n) => `${(HEAD + n * ROW + BOTTOM) / SMALL}rem`;
 
 /**
  * One bar per name, and a line across all where theory is known.

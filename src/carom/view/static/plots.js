@@ -268,7 +268,7 @@ export class Plots {
       return section.empty("Waiting for spheres to meet walls that have an end.");
     }
     const bars = all.slice(0, MOST_WALLS);
-    section.canvas.style.setProperty("height", `${barsHeight(bars.length)}px`);
+    section.canvas.style.setProperty("height", barsHeight(bars.length));
     drawBars(section.canvas, bars, { color: "--plot-bars", label: "pressure", theory });
     const mean = all.reduce((sum, { value }) => sum + value, 0) / all.length;
     /** @type {Series[]} */ const series = [{ name: "mean", color: "--plot-bars", value: short(mean) }];
