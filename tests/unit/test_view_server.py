@@ -140,7 +140,9 @@ def test_every_page_is_told_its_role_and_the_library(view):
     with page(view) as ws:
         assert hear(ws, "role") == "control"
         names = [scene["name"] for scene in hear(ws, "catalogue")]
-        assert names == scenes.names()
+        assert sorted(names) == scenes.names()
+        phases = [f"phase-{k}" for k in range(5)]
+        assert (names[:2], names[-5:]) == (["two-balls", "newton-cradle"], phases)
 
 
 def test_notes_come_with_the_first_frame_and_when_they_change(view):

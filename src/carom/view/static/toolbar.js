@@ -1,4 +1,4 @@
-/** The buttons of the hands' tools: every `[data-tool]` of the page, and the switch of arrows. */
+/** The buttons of the hands' tools: every `[data-tool]` of the page. */
 
 /** @typedef {import("./tools.js").Tool} Tool */
 
@@ -10,6 +10,9 @@ const NAMES = {
   follow: "Follow the selected sphere (O)",
 };
 
+/** What concerns the selected sphere alone. @type {Tool[]} */
+const ONE = ["trail", "follow"];
+
 /** @param {import("./tools.js").Hands} hands */
 export function attachToolbar(hands) {
   /** @type {NodeListOf<HTMLButtonElement>} */
@@ -20,13 +23,14 @@ export function attachToolbar(hands) {
     button.title = NAMES[toolOf(button)];
     button.addEventListener("click", () => hands.toggle(toolOf(button)));
   }
-  const arrows = document.getElementById("show-arrows");
-  arrows?.addEventListener("change", () => hands.toggle("arrows"));
   hands.listeners.push(() => {
     for (const button of buttons) {
-      const on = String(hands.isOn(toolOf(button)));
+      const tool = toolOf(button);
+      // Without a selected sphere there is nothing to follow, and no trail to see.
+      const idle = ONE.includes(tool) && hands.selected === null;
+      const on = String(!idle && hands.isOn(tool));
+      button.classList.toggle("idle", idle);
       if (button.getAttribute("aria-pressed") !== on) button.setAttribute("aria-pressed", on);
     }
-    if (arrows instanceof HTMLInputElement) arrows.checked = hands.isOn("arrows");
   });
 }

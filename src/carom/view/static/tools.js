@@ -193,10 +193,10 @@ export class Hands {
       if (this.mode === "add") return this.leaveAdding();
       this.mode = "add";
       this.canvas.dataset.mode = "add";
-      if (!this.told) this.toast("Press where the ball shall be, drag its velocity, let go. The same button ends adding.");
+      if (!this.told) this.toast("Press where the ball should be, drag to give it a velocity, let go.");
       this.told = true;
     } else if (this.following) this.camera.follows = false;
-    else if (this.selected === null) this.toast("Select a sphere first, then follow it.");
+    else if (this.selected === null) this.toast("Select a sphere first: click it, or press J.");
     else this.#follow(this.selected);
   }
 
