@@ -7,6 +7,7 @@ import carom
 from carom import scenes
 from carom.view import LiveView
 
+from .conftest import Shown
 from .test_page import still_life
 
 
@@ -91,3 +92,45 @@ def test_who_only_watches_is_told(show, chromium):
     page.locator(".toast").get_by_text("may only watch").wait_for()
     assert shown.js("carom.timeline.newest.playing")
     page.close()
+
+
+def test_an_error_is_said_and_stops_nothing(chromium):
+    """Whatever goes wrong in the page, its clock runs on, and people are told."""
+    page = chromium.new_page()
+    errors = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    try:
+        with LiveView(carom.Simulation(scenes.gas(n=20))) as view:
+            page.goto(view.url)
+            shown = Shown(None, view, page)
+            shown.wait("globalThis.carom?.drawn.t > 0")
+            shown.js("() => { carom.renderer.draw = () => { throw new Error('no more paint'); }; }")
+            page.locator("#failure").get_by_text("no more paint").wait_for()
+            before = shown.js("carom.readout.shown")
+            shown.wait(f"carom.readout.shown > {before + 500}")
+            assert len(errors) == 1, errors  # not one in every picture
+            shown.js("delete carom.renderer.draw")
+            moment = shown.js("carom.timeline.t")
+            shown.wait(f"carom.drawn.t > {moment}")
+            assert page.locator("#failure").is_visible()
+            shown.js("carom.gallery.load('bounce')")
+            page.locator("#failure").wait_for(state="hidden")
+    finally:
+        page.close()
+
+
+def test_a_page_without_a_line_can_still_be_looked_at(chromium):
+    page = chromium.new_page(reduced_motion="reduce")
+    try:
+        with LiveView(carom.Simulation(scenes.gas(n=20))) as view:
+            page.goto(view.url)
+            shown = Shown(None, view, page)
+            shown.wait("globalThis.carom?.drawn.t > 0")
+        page.locator("#connection").get_by_text("Waiting").wait_for()
+        version = shown.js("carom.drawn.camera")
+        page.keyboard.press("ArrowLeft")
+        shown.wait(f"carom.drawn.camera > {version}")
+        shown.js("carom.hands.select(3)")
+        page.locator(".sphere-title").get_by_text("Sphere 3").wait_for()
+    finally:
+        page.close()
