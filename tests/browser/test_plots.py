@@ -4,7 +4,6 @@ import dataclasses
 import math
 import re
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,7 +13,6 @@ from carom import scenes
 
 from .png import pixels
 
-MOUNT = Path(__file__).with_name("mount_plots.js").read_text()
 ALL = ("Speeds", "Energy", "Momentum", "Collision rate", "Pressure on walls")
 
 
@@ -24,7 +22,6 @@ def plot(show):
 
     def open_plots(sim, *names, **options):
         shown = show(sim, **options)
-        shown.js(MOUNT)
         for name in ALL:
             shown.js(
                 f"""() => {{

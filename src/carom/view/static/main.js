@@ -185,8 +185,8 @@ class Page {
     this.parameters.setOrigin(about.origin);
     this.laws.setScene(scene, fresh);
     this.look.setScene(scene, other);
-    this.hands.setScene(scene);
-    this.plots.setScene(scene);
+    this.hands.setScene(scene, fresh);
+    this.plots.setScene(scene, fresh);
     if (other) this.#resize();
     if (other || (fresh && !this.camera.moved)) this.#fit();
     this.#obeyAddress();

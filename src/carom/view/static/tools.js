@@ -72,12 +72,12 @@ export class Hands {
     calm();
   }
 
-  /** @param {Scene} scene */
-  setScene(scene) {
+  /** @param {Scene} scene @param {boolean} fresh whether it is another one, not the same with other spheres */
+  setScene(scene, fresh) {
     const before = this.scene;
     this.scene = scene;
     this.sides = [];
-    if (before === null || before.about.key !== scene.about.key) {
+    if (before === null || fresh) {
       this.select(null);
       this.flash.clear();
       this.leaveAdding();
@@ -87,11 +87,6 @@ export class Hands {
       this.handle.fullSpeed = scene.about.full_speed;
     } else if (scene.n < before.n) this.select(null); // numbers mean other spheres now
     this.version++;
-  }
-
-  /** One picture over the whole canvas. @param {Keyframe} first @param {Keyframe} second @param {number} t */
-  setPair(first, second, t) {
-    this.setSides([{ first, second, t, viewport: { x: 0, y: 0, ...this.camera.size } }]);
   }
 
   /** What is going to be drawn now; to be told before every picture. @param {Side[]} sides */
