@@ -234,7 +234,7 @@ test("a hundred thousand spheres are asked within a frame", () => {
 
 const OPEN = [0, 0, 0];
 const frame = (t, x, v, hits, more = {}) => ({
-  n: 1, t, epoch: 0, gravity: OPEN,
+  n: 1, t, clock: 0, epoch: 0, gravity: OPEN,
   position: Float32Array.from(x), velocity: Float32Array.from(v), counts: Uint32Array.of(hits), ...more,
 });
 const listed = (trail) => {
@@ -275,10 +275,13 @@ test("a trail is interrupted at periodic borders and by jumps of the motion", ()
   assert.deepEqual(points.map(([x]) => Number.isNaN(x)), [false, false, true, false, false]);
   near([points[1][0], points[3][0]], [4.9, -4.7], 1e-6);
   const again = frame(0.6, [1, 1, 1], [0, 0, 0], 0, { epoch: 1 });
-  trail.extend(again, again, 0.6, 0, period);
-  points = listed(trail);
-  assert.ok(Number.isNaN(points.at(-2)[0]));
-  near(points.at(-1), [1, 1, 1], 0);
+  const woken = frame(90, [2, 1, 1], [0, 0, 0], 0, { epoch: 1, clock: 60 });
+  for (const late of [again, woken]) {
+    trail.extend(late, late, late.t, 0, period);
+    points = listed(trail);
+    assert.ok(Number.isNaN(points.at(-2)[0]));
+    near(points.at(-1), [late.position[0], 1, 1], 0);
+  }
 });
 
 test("a trail keeps its newest points only", () => {

@@ -96,6 +96,7 @@ export class Hands {
     this.before = now;
     if (this.scene === null) return;
     this.sides = sides;
+    this.trails.splice(sides.length); // that of a side which has gone would go on elsewhere
     if (this.selected !== null) this.#attend(this.selected);
     if (sides.length > 0 && this.flash.update(sides[0], this.scene, now)) this.version++;
     for (const listener of this.listeners) listener(now);
