@@ -33,6 +33,7 @@ export function short(value, digits = 3) {
 /** A power of ten: 3 × 10⁻¹⁵. @param {number} value */
 export function scientific(value) {
   if (value === 0) return "0";
+  if (!Number.isFinite(value)) return "–";
   const [mantissa, power] = Math.abs(value).toExponential(0).split("e");
   return `${mantissa} × 10${superscript(Number(power))}`;
 }
