@@ -336,10 +336,10 @@ class Page {
 
   /** @param {import("./tools.js").Side[]} sides @returns {import("./renderer.js").Picture} */
   #picture(sides) {
-    const { marks, arrows, trails, ghost } = this.hands.overlay();
     const { color, full, wire } = this.look;
-    const options = { color, full, wire, theme: this.theme.name, arrows: this.hands.isOn("arrows") };
-    return { sides, camera: this.camera, options, marks, arrows, trails, ghost };
+    const arrows = this.hands.isOn("arrows") ? this.hands.time : 0;
+    const options = { color, full, wire, theme: this.theme.name, arrows };
+    return { sides, camera: this.camera, options, ...this.hands.overlay() };
   }
 
   /** The picture as a file, in its middle what the page shows beside its panels. */

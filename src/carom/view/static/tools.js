@@ -9,15 +9,17 @@
  *   viewport: {x: number, y: number, width: number, height: number}}} Side
  * @typedef {"add" | "arrows" | "trail" | "follow"} Tool
  */
+import { annotate } from "./annotations.js";
+import { arrowTime } from "./arrows.js";
 import { Flash } from "./flash.js";
 import { attachPointers } from "./gestures.js";
 import { Handle, Label } from "./handle.js";
 import { placeOf } from "./interpolation.js";
-import { NewBall, arrowTime, reachOf } from "./newball.js";
-import { annotate } from "./annotations.js";
+import { NewBall, median } from "./newball.js";
 import { pick } from "./pick.js";
 import { say } from "./protocol.js";
 import { Trail } from "./trail.js";
+import { buildWalls, reachOf } from "./walls.js";
 
 const SLACK = 5; // pixels by which the mouse may miss a small sphere
 const TOUCH_SLACK = 18; // and a finger
@@ -77,16 +79,21 @@ export class Hands {
     const before = this.scene;
     this.scene = scene;
     this.sides = [];
-    if (before === null || fresh) {
+    if (fresh) {
       this.select(null);
       this.flash.clear();
       this.leaveAdding();
-      this.next.resemble(scene);
-      this.reach = reachOf(scene.about);
-      this.time = this.handle.time = arrowTime(this.reach, scene.about);
-      this.handle.fullSpeed = scene.about.full_speed;
-    } else if (scene.n < before.n) this.select(null); // numbers mean other spheres now
+      this.#measure(scene);
+    } else if (before !== null && scene.n < before.n) this.select(null); // numbers mean other spheres now
     this.version++;
+  }
+
+  /** Scales that stay as long as the scene does, whatever is added or pushed. @param {Scene} scene */
+  #measure(scene) {
+    this.reach = reachOf(buildWalls(scene.about).bounds);
+    this.time = this.handle.time = arrowTime(median(scene.radius) || 0, this.reach, scene.about);
+    this.handle.fullSpeed = scene.about.full_speed;
+    this.next.resemble(scene, this.reach);
   }
 
   /** What is going to be drawn now; to be told before every picture. @param {Side[]} sides */
@@ -124,7 +131,8 @@ export class Hands {
     const stands = alone && !side.second.playing && side.t === side.second.t;
     const free = this.scene !== null && Number.isFinite(this.scene.mass[i]);
     const sphere = stands && free && this.mode === "turn" ? this.stateOf(i, 0) : null;
-    const ball = sphere === null ? null : { ...sphere, viewport: side.viewport };
+    const radius = this.scene?.radius[i] ?? 0;
+    const ball = sphere === null ? null : { ...sphere, radius, viewport: side.viewport };
     const { wanted } = this.handle;
     if (this.handle.hold(ball, side?.second.epoch ?? -1)) this.version++;
     if (this.handle.drag !== null || this.handle.wanted !== wanted) this.version++;
