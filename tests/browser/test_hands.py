@@ -248,6 +248,50 @@ def test_the_trail_lies_behind_the_ball(show):
     assert shown.js("carom.hands.overlay().trails") == []
 
 
+def test_tools_of_the_selected_sphere_are_pressed_only_with_one(show):
+    shown = show(still_life())
+    page = shown.page
+    bar = page.locator("#bar")
+
+    def pressed(name):
+        return bar.get_by_role("button", name=name).get_attribute("aria-pressed")
+
+    inspector = page.locator("#section-inspector")
+    inspector.get_by_text("No sphere selected").wait_for(state="visible")
+    assert inspector.get_by_text("Click a sphere").is_visible()
+    assert (pressed("Trail"), pressed("Follow")) == ("false", "false")
+    for key in ("t", "o"):  # nothing to do it with: they say so
+        page.keyboard.press(key)
+    assert page.locator(".toast").filter(has_text="Select a sphere first").count() == 2
+    time.sleep(0.2)
+    assert (pressed("Trail"), pressed("Follow")) == ("false", "false")
+    inspector.get_by_role("button", name="Next sphere").click()
+    page.locator("#bar [data-tool=trail][aria-pressed=true]").wait_for()
+    assert pressed("Follow") == "false"
+    page.keyboard.press("o")
+    own = inspector.get_by_role("button", name="Follow")
+    page.locator("#inspector [aria-label^=Follow][aria-pressed=true]").wait_for()
+    page.keyboard.press("Shift+ArrowLeft")  # moving the camera lets it go
+    page.locator("#inspector [aria-label^=Follow][aria-pressed=false]").wait_for()
+    assert own.is_visible()
+    assert pressed("Follow") == "false"
+    page.keyboard.press("t")
+    page.locator("#bar [data-tool=trail][aria-pressed=false]").wait_for()
+    page.keyboard.press("Escape")
+    page.keyboard.press("j")
+    time.sleep(0.3)
+    assert pressed("Trail") == "false"  # what people chose stays
+
+
+def test_on_a_phone_the_selected_sphere_takes_room_only_when_there_is_one(show):
+    shown = show(still_life(), 390, 844)
+    shown.page.keyboard.press("p")
+    inspector = shown.page.locator("#section-inspector")
+    inspector.wait_for(state="hidden")
+    shown.page.keyboard.press("j")
+    inspector.wait_for(state="visible")
+
+
 def test_a_dragged_velocity_reaches_the_engine(show):
     shown = show(still_life())
     pause_and_select(shown, 1)

@@ -358,8 +358,9 @@ class Page {
     this.looked = now;
     this.laws.gravity.turnCompass();
     this.hands.theme = this.theme.name;
+    // A hint how to select one has its place where there is room.
     const chosen = this.hands.selected !== null || this.hands.isOn("add");
-    at("section-inspector").hidden = !chosen;
+    at("section-inspector").hidden = NARROW.matches && !chosen;
     const { newest } = this.timeline;
     if (newest !== undefined) this.look.watch(newest.counts);
     if (this.settings?.comparing) {

@@ -1,5 +1,7 @@
 /** The buttons of the hands' tools: every `[data-tool]` of the page, and the switch of arrows. */
 
+import { press } from "./dom.js";
+
 /** @typedef {import("./tools.js").Tool} Tool */
 
 /** @type {Record<Tool, string>} */
@@ -23,10 +25,7 @@ export function attachToolbar(hands) {
   const arrows = document.getElementById("show-arrows");
   arrows?.addEventListener("change", () => hands.toggle("arrows"));
   hands.listeners.push(() => {
-    for (const button of buttons) {
-      const on = String(hands.isOn(toolOf(button)));
-      if (button.getAttribute("aria-pressed") !== on) button.setAttribute("aria-pressed", on);
-    }
+    for (const button of buttons) press(button, hands.isOn(toolOf(button)));
     if (arrows instanceof HTMLInputElement) arrows.checked = hands.isOn("arrows");
   });
 }

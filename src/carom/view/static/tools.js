@@ -45,7 +45,7 @@ export class Hands {
     /** @type {number | null} */ this.selected = null;
     this.side = 0; // on which it was selected
     /** @type {"turn" | "add"} */ this.mode = "turn";
-    this.trailing = true;
+    this.trailing = true; // a selected sphere draws its trail
     this.told = false; // how balls are added
     this.arrows = false; // of all spheres; drawn by whoever draws them
     /** @type {"dark" | "light"} */ this.theme = "dark";
@@ -183,25 +183,29 @@ export class Hands {
   isOn(tool) {
     if (tool === "add") return this.mode === "add";
     if (tool === "arrows") return this.arrows;
-    return tool === "trail" ? this.trailing : this.following;
+    return tool === "trail" ? this.trailing && this.selected !== null : this.following;
   }
 
   /** Switch a tool on or off. @param {Tool} tool */
   toggle(tool) {
     this.version++;
     if (tool === "arrows") this.arrows = !this.arrows;
-    else if (tool === "trail") {
+    else if (tool === "add") this.mode === "add" ? this.leaveAdding() : this.#startAdding();
+    else if (this.selected === null) {
+      const what = tool === "trail" ? "its trail comes with it" : "then follow it";
+      this.toast(`Select a sphere first, ${what}.`);
+    } else if (tool === "trail") {
       this.trailing = !this.trailing;
       this.trails = [];
-    } else if (tool === "add") {
-      if (this.mode === "add") return this.leaveAdding();
-      this.mode = "add";
-      this.canvas.dataset.mode = "add";
-      if (!this.told) this.toast("Press where the ball shall be, drag its velocity, let go. The same button ends adding.");
-      this.told = true;
     } else if (this.following) this.camera.follows = false;
-    else if (this.selected === null) this.toast("Select a sphere first, then follow it.");
     else this.#follow(this.selected);
+  }
+
+  #startAdding() {
+    this.mode = "add";
+    this.canvas.dataset.mode = "add";
+    if (!this.told) this.toast("Press where the ball shall be, drag its velocity, let go. The same button ends adding.");
+    this.told = true;
   }
 
   /** @param {number} i */
