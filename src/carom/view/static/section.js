@@ -51,6 +51,8 @@ export class Section {
     const content = element("div", "content");
     content.append(this.canvas, this.key, this.words, this.note);
     this.details.append(summary, content);
+    this.width = 0; // as last laid out: asking for it would lay out the page at once
+    new ResizeObserver(([{ contentRect }]) => (this.width = contentRect.width)).observe(this.details);
     this.details.addEventListener("toggle", () => this.#hurry());
     new ResizeObserver(() => this.#hurry()).observe(this.canvas);
   }
@@ -62,7 +64,7 @@ export class Section {
 
   /** Is it seen by anybody? */
   get open() {
-    return this.details.open && this.details.clientWidth > 0;
+    return this.details.open && this.width > 0;
   }
 
   /** @param {number} limit milliseconds: drawn since then is soon enough */
