@@ -125,7 +125,7 @@ void main() {
 `;
 
 /** @returns {{vertices: Float32Array, indices: Uint16Array}} */
-export function arrowMesh(around = AROUND) {
+function arrowMesh(around = AROUND) {
   const vertices = [];
   const indices = [];
   for (let k = 0; k < around; k++) {

@@ -9,7 +9,7 @@ import { velocityTo } from "./arrows.js";
 import { SPECIES } from "./colors.js";
 
 /** As 0xRRGGBB. @param {number[]} rgb parts from 0 to 1 */
-export const pack = ([r, g, b]) =>
+const pack = ([r, g, b]) =>
   (Math.round(255 * r) << 16) | (Math.round(255 * g) << 8) | Math.round(255 * b);
 
 /** The value in the middle; NaN of none. @param {Iterable<number>} values */

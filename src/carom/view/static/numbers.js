@@ -3,7 +3,7 @@
 const SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
 /** @param {number} power */
-export const superscript = (power) =>
+const superscript = (power) =>
   (power < 0 ? "⁻" : "") + [...String(Math.abs(power))].map((d) => SUPERSCRIPTS[Number(d)]).join("");
 
 /** Groups of three with thin spaces: 3 141 592. @param {number} value */
