@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
-from carom.errors import CaromError, CollapseError
+from carom.errors import CaromError, CollapseError, RunError
 from carom.view.announcer import Announcer
 from carom.view.protocol import Command, encode_text
 from carom.view.snapshot import Snapshot
@@ -19,8 +19,10 @@ PATIENCE = 0.04  #: seconds after which a run that takes longer than foreseen is
 IDLE = 0.25  #: seconds between looks around while nothing moves
 #: Of several in a row only the newest counts: sliders send many.
 SLIDERS = frozenset({"speed", "rule", "walls", "gravity", "scene"})
-#: What makes time run again after a failure.
-CURES = frozenset({"restart", "scene", "back", "compare"})
+#: What goes to another moment; all but a step back let time run again after a failure.
+JUMPS = frozenset({"restart", "scene", "back", "compare"})
+
+NO_MEMORY = RunError("there is not enough memory for this many spheres; take fewer")
 
 Reply = Callable[[str], None]
 
@@ -156,6 +158,8 @@ class Driver:
                 self._fail(error)
             except CaromError as error:
                 reply(encode_text("refused", _sentence(error)))
+            except MemoryError:
+                reply(encode_text("refused", _sentence(NO_MEMORY)))
             self._changed = True
 
     def _do(self, command: Command, reply: Reply) -> None:
@@ -168,11 +172,15 @@ class Driver:
         else:
             if command.op in ("step", "back"):
                 self._playing = False
-            self._stage.act(command)
-            if command.op in CURES:
-                if command.op == "restart" or self._failure:
+            failed, self._failure = self._failure, ""
+            try:
+                self._stage.act(command)
+            except BaseException:
+                self._failure = failed
+                raise
+            if command.op in JUMPS:
+                if command.op == "restart" or failed:
                     self._playing = command.op != "back"
-                self._failure = ""
                 self._reached = 0.0
                 self._run(0.0)
 
@@ -205,6 +213,8 @@ class Driver:
             pass
         except CaromError as error:
             self._fail(error)
+        except MemoryError:
+            self._fail(NO_MEMORY)
 
     def _fail(self, error: CaromError) -> None:
         self._failure, self._playing = _sentence(error), False
