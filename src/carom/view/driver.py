@@ -108,10 +108,10 @@ class Driver:
             self._thread.join()
 
     def order(self, command: Command, reply: Reply = lambda text: None) -> None:
-        """Ask for what a page can ask for; `reply` is told what could not be done."""
+        """Ask for what a page can ask for; `reply` is called once, with the answer or ""."""
         with self._lock:
             if self._orders and command.op in SLIDERS and self._orders[-1][0].op == command.op:
-                self._orders.pop()
+                self._orders.pop()[1]("")
             self._orders.append((command, reply))
         self._wake.set()
 
@@ -142,47 +142,63 @@ class Driver:
 
     def _rest(self, until: float, moving: bool) -> None:
         """Wait for the next step. Orders are obeyed at once, and end the wait unless moving."""
-        while not self._stopping and (left := until - time.perf_counter()) > 0:
+        while not self._stopping and not self._orders:
+            left = until - time.perf_counter()
+            if left <= 0:
+                return
             if self._wake.wait(left):
                 self._wake.clear()
-                if not moving or self._orders:
+                if not moving:
                     return
 
     def _obey(self) -> None:
-        with self._lock:
-            orders, self._orders = self._orders, deque()
-        for command, reply in orders:
-            try:
-                self._do(command, reply)
-            except CollapseError as error:
-                self._fail(error)
-            except CaromError as error:
-                reply(encode_text("refused", _sentence(error)))
-            except MemoryError:
-                reply(encode_text("refused", _sentence(NO_MEMORY)))
+        """Do what was ordered; pages get a frame between if there is much."""
+        end = time.perf_counter() + PATIENCE
+        while not self._stopping and time.perf_counter() < end:
+            with self._lock:
+                if not self._orders:
+                    return
+                command, reply = self._orders.popleft()
+            reply(self._answer(command))
             self._changed = True
 
-    def _do(self, command: Command, reply: Reply) -> None:
+    def _answer(self, command: Command) -> str:
+        """Do what a page asks for; say why not, or what it has asked for, or nothing."""
+        try:
+            return self._do(command)
+        except CollapseError as error:
+            self._fail(error)
+        except CaromError as error:
+            return encode_text("refused", _sentence(error))
+        except MemoryError:
+            return encode_text("refused", _sentence(NO_MEMORY))
+        return ""
+
+    def _do(self, command: Command) -> str:
+        if command.op == "source":
+            return encode_text("source", self._announcer.source())
         if command.op == "speed":
             self._speed = command["value"]
         elif command.op in ("play", "pause"):
             self._playing = command.op == "play" and not self._failure
-        elif command.op == "source":
-            reply(encode_text("source", self._announcer.source()))
         else:
-            if command.op in ("step", "back"):
-                self._playing = False
-            failed, self._failure = self._failure, ""
-            try:
-                self._stage.act(command)
-            except BaseException:
-                self._failure = failed
-                raise
-            if command.op in JUMPS:
-                if command.op == "restart" or failed:
-                    self._playing = command.op != "back"
-                self._reached = 0.0
-                self._run(0.0)
+            self._act(command)
+        return ""
+
+    def _act(self, command: Command) -> None:
+        if command.op in ("step", "back"):
+            self._playing = False
+        failed, self._failure = self._failure, ""
+        try:
+            self._stage.act(command)
+        except BaseException:
+            self._failure = failed
+            raise
+        if command.op in JUMPS:
+            if command.op == "restart" or failed:
+                self._playing = command.op != "back"
+            self._reached = 0.0
+            self._run(0.0)
 
     def _step(self, seconds: float) -> None:
         """Run for as much simulated time as `seconds` of the clock stand for."""

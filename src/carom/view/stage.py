@@ -141,7 +141,7 @@ class Stage:
 
     @property
     def _in_ticks(self) -> bool:
-        return self.sim.method == "tick"
+        return bool(self.sim.method == "tick")
 
     @property
     def _count(self) -> int:
