@@ -43,7 +43,7 @@ async (spec) => {
       viewport: { x: (k * width) / sides.length, y: 0, width: width / sides.length, height },
     })),
     camera,
-    options: { color: about.color, full: spec.full ?? 1, wire: about.wire, theme: spec.theme ?? "dark", arrows: spec.swarm ?? false },
+    options: { color: about.color, full: spec.full ?? 1, wire: about.wire, theme: spec.theme ?? "dark", arrows: spec.swarm ?? 0 },
     marks: spec.marks ?? [],
     arrows: spec.arrows ?? [],
     trails: (spec.trails ?? []).map((trail) => ({ ...trail, points: Float32Array.from(trail.points, (p) => p ?? NaN) })),

@@ -105,6 +105,19 @@ def test_speed_keys(show):
     shown.wait("carom.timeline.newest?.speed === 1")
 
 
+def test_keys_pressed_faster_than_the_server_answers_all_count(show):
+    shown = show(carom.Simulation(scenes.phase_3()))
+    shown.js("for (let k = 0; k < 5; k++) carom.actions.faster()")
+    shown.wait("carom.timeline.newest?.speed > 9.99")
+    # Frames with the speed from before may still have come; what was asked for stays.
+    assert shown.text("speed-value") == "10×"
+    slider = shown.page.get_by_role("slider", name="Speed")
+    slider.focus()
+    shown.js("carom.connection.send(JSON.stringify({op: 'speed', value: 0.1}))")
+    shown.page.locator("#speed-value").get_by_text("0.1×").wait_for()
+    assert float(slider.input_value()) == -50
+
+
 def test_space_means_pause_after_a_click_on_another_button(show):
     shown = show(carom.Simulation(scenes.phase_3()))
     page = shown.page
@@ -179,6 +192,22 @@ def test_no_gravity_where_everything_is_periodic(show):
     open_section(shown, "settings")
     assert shown.page.get_by_text("No gravity.").is_visible()
     assert shown.page.get_by_role("button", name="Gravity down").is_hidden()
+
+
+def test_a_wish_outlives_the_scene_that_comes_before_it_is_said(show):
+    shown = show(carom.Simulation(scenes.gas(n=20)))
+    shown.wait("carom.parameters.rows.length > 0")
+    field = shown.page.get_by_role("spinbutton", name="Number of spheres")
+    field.fill("31")
+    field.press("Enter")
+    shown.js("carom.parameters.setOrigin(carom.scene.about.origin)")
+    shown.wait("carom.scene.n === 31")
+    # But it is not meant for another scene.
+    field.fill("45")
+    field.press("Enter")
+    shown.js("carom.parameters.setOrigin({name: 'bounce', options: {}})")
+    time.sleep(0.6)
+    assert shown.js("carom.scene.n") == 31
 
 
 def test_the_scenes_own_parameters(show):

@@ -1,12 +1,18 @@
 """The page over time: nothing piles up, and it comes back after a loss."""
 
+import gc
 import socket
 import time
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
 
 import carom
 from carom import scenes
 from carom.view import LiveView
 
+from .conftest import Shown
 from .test_page import still_life
 
 
@@ -46,6 +52,35 @@ def test_nothing_piles_up(show):
     assert more_listeners <= listeners + 25
     assert more_nodes <= nodes + 60
     assert shown.js("carom.twin.keyframes.length") <= 12
+
+
+@pytest.mark.validate
+def test_ten_minutes_leave_no_trace(show):
+    """Memory of the page and of the program, minute by minute, while a class plays with it."""
+    shown = show(carom.Simulation(scenes.gas(n=200)))
+    cdp = shown.page.context.new_cdp_session(shown.page)
+    cdp.send("Performance.enable")
+    page_bytes, program_bytes, counts = [], [], []
+    end = time.perf_counter() + 600
+    k = 0
+    while time.perf_counter() < end:
+        minute = time.perf_counter() + 60
+        while time.perf_counter() < minute:
+            round_trip(shown, 2 * k)  # an even number: the same scene at every reading
+            time.sleep(3)
+            k += 1
+        counts.append(metrics(shown, cdp))
+        found = cdp.send("Performance.getMetrics")["metrics"]
+        page_bytes.append(next(m["value"] for m in found if m["name"] == "JSHeapUsedSize"))
+        gc.collect()
+        program_bytes.append(int(Path("/proc/self/statm").read_text().split()[1]) * 4096)
+    report = f"{k} rounds; page {page_bytes}; program {program_bytes}; {counts}"
+    print(report)  # noqa: T201
+    # The first minutes fill caches and histories, which have a largest size.
+    assert page_bytes[-1] < page_bytes[1] + 2e6, report
+    assert program_bytes[-1] < program_bytes[1] + 40e6, report
+    assert counts[-1][0] <= counts[1][0] + 25, report
+    assert counts[-1][1] <= counts[1][1] + 60, report
 
 
 def test_a_lost_graphics_context_is_replaced(show):
@@ -90,4 +125,130 @@ def test_who_only_watches_is_told(show, chromium):
     page.keyboard.press("Space")
     page.locator(".toast").get_by_text("may only watch").wait_for()
     assert shown.js("carom.timeline.newest.playing")
+    page.close()
+
+
+def test_an_error_is_said_and_stops_nothing(chromium):
+    """Whatever goes wrong in the page, its clock runs on, and people are told."""
+    page = chromium.new_page()
+    errors = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    try:
+        with LiveView(carom.Simulation(scenes.gas(n=20))) as view:
+            page.goto(view.url)
+            shown = Shown(None, view, page)
+            shown.wait("globalThis.carom?.drawn.t > 0")
+            shown.js("() => { carom.renderer.draw = () => { throw new Error('no more paint'); }; }")
+            page.locator("#failure").get_by_text("no more paint").wait_for()
+            before = shown.js("carom.readout.shown")
+            shown.wait(f"carom.readout.shown > {before + 500}")
+            assert len(errors) == 1, errors  # not one in every picture
+            shown.js("delete carom.renderer.draw")
+            moment = shown.js("carom.timeline.t")
+            shown.wait(f"carom.drawn.t > {moment}")
+            assert page.locator("#failure").is_visible()
+            shown.js("carom.gallery.load('bounce')")
+            page.locator("#failure").wait_for(state="hidden")
+    finally:
+        page.close()
+
+
+def test_a_page_without_a_line_can_still_be_looked_at(chromium):
+    page = chromium.new_page(reduced_motion="reduce")
+    try:
+        with LiveView(carom.Simulation(scenes.gas(n=20))) as view:
+            page.goto(view.url)
+            shown = Shown(None, view, page)
+            shown.wait("globalThis.carom?.drawn.t > 0")
+        page.locator("#connection").get_by_text("Waiting").wait_for()
+        version = shown.js("carom.drawn.camera")
+        page.keyboard.press("ArrowLeft")
+        shown.wait(f"carom.drawn.camera > {version}")
+        shown.js("carom.hands.select(3)")
+        page.locator(".sphere-title").get_by_text("Sphere 3").wait_for()
+    finally:
+        page.close()
+
+
+def sleep(page, during):
+    """Nothing of the page runs meanwhile, as under a closed lid: no picture, clock or message."""
+    cdp = page.context.new_cdp_session(page)
+    cdp.send("Debugger.enable")
+    cdp.send("Debugger.pause")
+    during()
+    cdp.send("Debugger.resume")
+    cdp.detach()
+
+
+def test_it_wakes_up_in_the_present(show):
+    shown = show(carom.Simulation(scenes.gas(n=20)))
+    shown.js("carom.hands.select(0)")
+    shown.js(
+        """() => {
+             carom.moments = [];
+             const { timeline } = carom;
+             const advance = timeline.advance.bind(timeline);
+             timeline.advance = (seconds) => {
+               const pair = advance(seconds);
+               if (pair !== null) carom.moments.push(timeline.t);
+               return pair;
+             };
+           }"""
+    )
+    shown.wait("carom.moments.length > 20")
+    times = {}
+
+    def during():
+        time.sleep(0.5)
+        times["asleep"] = shown.sim.time
+        time.sleep(3)
+        times["awake"] = shown.sim.time
+
+    before = time.perf_counter()
+    sleep(shown.page, during)
+    assert times["awake"] > times["asleep"]  # a sleeping page does not stop the simulation
+    shown.wait(f"carom.timeline.t > {times['awake']}", 5)
+    moments = shown.js("carom.moments")
+    steps = [b - a for a, b in zip(moments, moments[1:], strict=False)]
+    assert min(steps) >= 0
+    # One jump, not a film of what was missed; then it flows again as before.
+    missed = max(steps)
+    assert missed > 0.5 * (times["awake"] - times["asleep"])
+    assert sorted(steps)[-2] < 0.3 * missed
+    start = len(moments)
+    shown.wait(f"carom.moments.length > {start + 15}")
+    later = shown.js(f"carom.moments.slice({start})")
+    assert max(b - a for a, b in zip(later, later[1:], strict=False)) < 0.3 * missed
+    assert later[-1] <= shown.sim.time
+    assert shown.js("carom.timeline.newest.t - carom.timeline.t") < 1
+    assert shown.page.locator("#connection").is_hidden()
+    assert time.perf_counter() - before < 30
+    # The trail is not drawn across the night.
+    points = shown.js("[...carom.hands.trails[0].points]")
+    assert None in points or any(p != p for p in points)
+
+
+def test_it_wakes_up_to_another_program(chromium):
+    """While the page slept the program ended, and was started again at the same port."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    page = chromium.new_page()
+    with ExitStack() as program:
+        view = program.enter_context(LiveView(carom.Simulation(scenes.gas(n=20)), port=port))
+        page.goto(view.url)
+        shown = Shown(None, view, page)
+        shown.wait("globalThis.carom?.drawn.t > 0.2")
+
+        def during():
+            time.sleep(0.3)
+            program.close()
+            program.enter_context(LiveView(carom.Simulation(scenes.phase_3()), port=port))
+            time.sleep(3)
+
+        sleep(page, during)
+        page.locator("#title").get_by_text("Phase 3").wait_for(timeout=10_000)
+        assert page.locator("#connection").is_hidden()
+        moment = shown.js("carom.drawn.t")
+        shown.wait(f"carom.drawn.t > {moment}")
     page.close()

@@ -123,6 +123,14 @@ def handle(shown):
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
 
+def tip_of(shown, i):
+    """Where the arrow of a sphere's velocity ends: it grows out of the surface."""
+    sim = shown.sim
+    speed = np.linalg.norm(sim.velocity[i])
+    ahead = sim.velocity[i] / speed
+    return sim.position[i] + ahead * (0.96 * sim.radius[i] + speed * shown.js("carom.hands.time"))
+
+
 def test_a_drag_turns_and_selects_nothing_and_double_click_shows_everything(show):
     shown = show(still_life())
     shown.settle()
@@ -240,6 +248,50 @@ def test_the_trail_lies_behind_the_ball(show):
     assert shown.js("carom.hands.overlay().trails") == []
 
 
+def test_tools_of_the_selected_sphere_are_pressed_only_with_one(show):
+    shown = show(still_life())
+    page = shown.page
+    bar = page.locator("#bar")
+
+    def pressed(name):
+        return bar.get_by_role("button", name=name).get_attribute("aria-pressed")
+
+    inspector = page.locator("#section-inspector")
+    inspector.get_by_text("No sphere selected").wait_for(state="visible")
+    assert inspector.get_by_text("Click a sphere").is_visible()
+    assert (pressed("Trail"), pressed("Follow")) == ("false", "false")
+    for key in ("t", "o"):  # nothing to do it with: they say so
+        page.keyboard.press(key)
+    assert page.locator(".toast").filter(has_text="Select a sphere first").count() == 2
+    time.sleep(0.2)
+    assert (pressed("Trail"), pressed("Follow")) == ("false", "false")
+    inspector.get_by_role("button", name="Next sphere").click()
+    page.locator("#bar [data-tool=trail][aria-pressed=true]").wait_for()
+    assert pressed("Follow") == "false"
+    page.keyboard.press("o")
+    own = inspector.get_by_role("button", name="Follow")
+    page.locator("#inspector [aria-label^=Follow][aria-pressed=true]").wait_for()
+    page.keyboard.press("Shift+ArrowLeft")  # moving the camera lets it go
+    page.locator("#inspector [aria-label^=Follow][aria-pressed=false]").wait_for()
+    assert own.is_visible()
+    assert pressed("Follow") == "false"
+    page.keyboard.press("t")
+    page.locator("#bar [data-tool=trail][aria-pressed=false]").wait_for()
+    page.keyboard.press("Escape")
+    page.keyboard.press("j")
+    time.sleep(0.3)
+    assert pressed("Trail") == "false"  # what people chose stays
+
+
+def test_on_a_phone_the_selected_sphere_takes_room_only_when_there_is_one(show):
+    shown = show(still_life(), 390, 844)
+    shown.page.keyboard.press("p")
+    inspector = shown.page.locator("#section-inspector")
+    inspector.wait_for(state="hidden")
+    shown.page.keyboard.press("j")
+    inspector.wait_for(state="visible")
+
+
 def test_a_dragged_velocity_reaches_the_engine(show):
     shown = show(still_life())
     pause_and_select(shown, 1)
@@ -257,16 +309,17 @@ def test_a_dragged_velocity_reaches_the_engine(show):
     assert np.all(shown.sim.velocity[[0, 2]] == 0)
     assert shown.sim.position[1] == pytest.approx((0, 2, 2))
     # The arrow of this velocity ends where the mouse let go.
-    tip = np.array((0, 2, 2)) + velocity * shown.js("carom.hands.time")
+    tip = tip_of(shown, 1)
     assert where(shown, tip)[:2] == pytest.approx((x + 70, y - 40), abs=1.5)
     # Across the view only: the ball was at rest.
     back = np.array(shown.js("carom.camera.axes.back"))
     assert abs(velocity @ back) < 1e-6 * np.linalg.norm(velocity)
-    # Now with a part along the view, which a drag does not show: it stays.
+    # Now with a part along the view, which a drag does not show: the tip stays as far away.
     faster = (velocity + 0.4 * np.linalg.norm(velocity) * back).tolist()
     shown.js(f"carom.connection.send(JSON.stringify({{op: 'push', index: 1, velocity: {faster}}}))")
     shown.wait(f"Math.abs(carom.hands.handle.velocity[0] - ({faster[0]!r})) < 1e-5")
     time.sleep(0.2)
+    tip = tip_of(shown, 1)
     x, y = handle(shown)
     mouse.move(x, y)
     mouse.down()
@@ -274,7 +327,7 @@ def test_a_dragged_velocity_reaches_the_engine(show):
     mouse.up()
     time.sleep(0.5)
     assert handle(shown) == pytest.approx((x - 50, y - 30), abs=1.5)
-    assert shown.sim.velocity[1] @ back == pytest.approx(faster @ back, rel=1e-5)
+    assert tip_of(shown, 1) @ back == pytest.approx(tip @ back, rel=1e-5)
     assert np.linalg.norm(shown.sim.velocity[1] - faster) > 0.1
     shown.page.locator(".hand-handle").press("ArrowUp")
     time.sleep(0.4)
@@ -307,7 +360,7 @@ def test_a_ball_is_added_where_it_is_pressed_and_flies_where_it_is_thrown(show):
     sim = shown.sim
     assert sim.position[3] == pytest.approx(ghost["x"], abs=1e-5)
     assert where(shown, sim.position[3])[:2] == pytest.approx((x, y), abs=1)
-    tip = sim.position[3] + sim.velocity[3] * shown.js("carom.hands.time")
+    tip = tip_of(shown, 3)
     assert where(shown, tip)[:2] == pytest.approx((x + 90, y + 30), abs=1)
     assert sim.radius[3] == pytest.approx(radius)
     assert sim.mass[3] == pytest.approx(mass)
@@ -383,7 +436,7 @@ def test_a_finger_adds(show):
     finger("touchEnd")
     shown.wait("carom.scene.n === 4")
     assert where(shown, shown.sim.position[3])[:2] == pytest.approx((x, y), abs=1)
-    tip = shown.sim.position[3] + shown.sim.velocity[3] * shown.js("carom.hands.time")
+    tip = tip_of(shown, 3)
     assert where(shown, tip)[:2] == pytest.approx((x + 40, y - 20), abs=1)
 
 

@@ -129,14 +129,14 @@ def test_spheres_cast_shadows_on_one_another(draw):
 
 
 def test_velocity_arrows_point_along_the_velocity(draw):
-    spec = {"v": [0, 0, 1, 0, 0, 0], "look": [[0, -20, 0], [0, 0, 0]], "about": {"full_speed": 2}}
+    spec = {"v": [0, 0, 1, 0, 0, 0], "look": [[0, -20, 0], [0, 0, 0]]}
     places = [(-2, 0, 0), (2, 0, 0)]  # the second is at rest
-    without, with_ = draw(places, 0.5, **spec), draw(places, 0.5, swarm=True, **spec)
+    without, with_ = draw(places, 0.5, **spec), draw(places, 0.5, swarm=1.25, **spec)
     ys, xs = np.nonzero(changed(without, with_))
     x, y, per = where(with_, places[0])
     assert np.abs(xs - x).max() < 0.5 * per  # none at the second
     assert (y - ys).min() > 0.4 * per  # all above the first one's centre
-    assert (y - ys).max() == pytest.approx(per * (0.5 * 0.96 + 2.5 * 0.5), rel=0.1)
+    assert (y - ys).max() == pytest.approx(per * (0.5 * 0.96 + 1.25), rel=0.1)
 
 
 def test_a_mark_is_a_ring_outside_the_sphere(draw):
@@ -183,7 +183,8 @@ def test_a_ghost_is_seen_through(draw):
 
 
 def test_single_arrows_go_from_place_to_place(draw):
-    arrow = {"side": 0, "from": [-2, 0, 0], "to": [2, 0, 1], "color": [0.2, 1, 0.4]}
+    ends = {"from": [-2, 0, 0], "to": [2, 0, 1]}
+    arrow = {"side": 0, **ends, "color": [0.2, 1, 0.4], "strength": 1}
     look = [[0, -20, 0], [0, 0, 0]]
     plain = draw([(0, 0, -2.5)], look=look)
     ys, xs = np.nonzero(changed(plain, draw([(0, 0, -2.5)], look=look, arrows=[arrow])))
@@ -192,6 +193,15 @@ def test_single_arrows_go_from_place_to_place(draw):
     assert (xs.min(), xs.max()) == pytest.approx((x0, x1), abs=3)
     assert ys[np.argmax(xs)] == pytest.approx(y1, abs=3)
     assert ys[xs < x0 + 2].mean() == pytest.approx(y0, abs=4)
+    # Half as strong it is half seen through, as evenly where its parts lie behind one another.
+    faint = draw([(0, 0, -2.5)], look=look, arrows=[{**arrow, "strength": 0.5}])
+    full = drawn.picture.astype(float) - plain.picture
+    part = faint.picture.astype(float) - plain.picture
+    seen = np.abs(full).max(axis=2) > 60
+    assert seen.sum() > 300
+    assert part[seen] == pytest.approx(0.5 * full[seen], abs=8)
+    none = draw([(0, 0, -2.5)], look=look, arrows=[{**arrow, "strength": 0}])
+    assert not changed(plain, none).any()
 
 
 def test_two_sides_show_two_moments(draw):

@@ -9,7 +9,9 @@ const { placeOf, wrap } = await import(`${folder}interpolation.js`);
 const { everywhere, pick } = await import(`${folder}pick.js`);
 const { Trail } = await import(`${folder}trail.js`);
 const { Flash, contact } = await import(`${folder}flash.js`);
-const { NewBall, arrowTime, median, reachOf } = await import(`${folder}newball.js`);
+const { arrowEnds, arrowTime, velocityTo } = await import(`${folder}arrows.js`);
+const { NewBall, median } = await import(`${folder}newball.js`);
+const { buildWalls, reachOf } = await import(`${folder}walls.js`);
 const { aligned } = await import(`${folder}inspector.js`);
 
 /** Numbers that are the same in every run (mulberry32). */
@@ -234,7 +236,7 @@ test("a hundred thousand spheres are asked within a frame", () => {
 
 const OPEN = [0, 0, 0];
 const frame = (t, x, v, hits, more = {}) => ({
-  n: 1, t, epoch: 0, gravity: OPEN,
+  n: 1, t, clock: 0, epoch: 0, gravity: OPEN,
   position: Float32Array.from(x), velocity: Float32Array.from(v), counts: Uint32Array.of(hits), ...more,
 });
 const listed = (trail) => {
@@ -275,10 +277,13 @@ test("a trail is interrupted at periodic borders and by jumps of the motion", ()
   assert.deepEqual(points.map(([x]) => Number.isNaN(x)), [false, false, true, false, false]);
   near([points[1][0], points[3][0]], [4.9, -4.7], 1e-6);
   const again = frame(0.6, [1, 1, 1], [0, 0, 0], 0, { epoch: 1 });
-  trail.extend(again, again, 0.6, 0, period);
-  points = listed(trail);
-  assert.ok(Number.isNaN(points.at(-2)[0]));
-  near(points.at(-1), [1, 1, 1], 0);
+  const woken = frame(90, [2, 1, 1], [0, 0, 0], 0, { epoch: 1, clock: 60 });
+  for (const late of [again, woken]) {
+    trail.extend(late, late, late.t, 0, period);
+    points = listed(trail);
+    assert.ok(Number.isNaN(points.at(-2)[0]));
+    near(points.at(-1), [late.position[0], 1, 1], 0);
+  }
 });
 
 test("a trail keeps its newest points only", () => {
@@ -329,6 +334,7 @@ test("a flash stays while time stands, fades when it goes on, and ends with the 
   assert.equal(marks[0].strength, 1);
   near(arrows[0].from, [1, 0, 0], 1e-12);
   near(arrows[0].to, [-2.4, 0, 0], 1e-12);
+  assert.equal(arrows[0].strength, 1);
   flash.update(side(1), scene(), 60_000);
   const settled = flash.strength;
   assert.ok(settled > 0.2 && settled < 0.6);
@@ -336,6 +342,7 @@ test("a flash stays while time stands, fades when it goes on, and ends with the 
   flash.update(side(1.1, { playing: true }), scene(), 61_000);
   flash.update(side(1.2, { playing: true }), scene(), 61_750);
   assert.ok(Math.abs(flash.strength - settled / 2) < 0.02);
+  assert.equal(parts(flash, side(1.2)).arrows[0].strength, 0.5);
   assert.equal(flash.update(side(1.3, { playing: true }), scene(), 62_501), true);
   assert.equal(parts(flash, side(1.3)).marks.length, 0);
   for (const end of [{ epoch: 7 }]) {
@@ -355,22 +362,40 @@ test("a flash stays while time stands, fades when it goes on, and ends with the 
 
 test("a new ball is like the others and flies where its arrow ends", () => {
   const ball = new NewBall();
-  ball.resemble(scene({ mass: Float32Array.of(Infinity, 3) }));
+  ball.resemble(scene({ mass: Float32Array.of(Infinity, 3) }), 10);
   assert.deepEqual([ball.radius, ball.mass], [2, 3]);
-  ball.resemble(scene({ n: 0, mass: new Float32Array(0), radius: new Float32Array(0) }));
-  assert.ok(ball.radius > 0 && ball.mass === 1);
+  ball.resemble(scene({ n: 0, mass: new Float32Array(0), radius: new Float32Array(0) }), 10);
+  assert.deepEqual([ball.radius, ball.mass], [0.4, 1]);
   assert.equal(ball.release(), null);
   ball.put([1, 2, 3]);
+  ball.aim([1, 2, 3.2], 0.5);
+  assert.deepEqual(ball.ghost.velocity, [0, 0, 0]); // still inside the ball
   ball.aim([1, 2, 7], 0.5);
   const first = ball.release();
-  assert.deepEqual(first.velocity, [0, 0, 8]);
+  near(first.velocity, [0, 0, 2 * (4 - 0.96 * 0.4)], 1e-12);
   assert.deepEqual(first.position, [1, 2, 3]);
   ball.put([0, 0, 0]);
   const second = ball.release();
   assert.ok(second.color !== first.color && Number.isInteger(second.color) && second.color < 2 ** 24);
   assert.equal(median([5, 1, 3]), 3);
-  const { about } = scene();
-  assert.ok(reachOf(about) > 0 && Math.abs(arrowTime(10, about) * about.full_speed - 4) < 1e-12);
+  assert.ok(Math.abs(reachOf(buildWalls(scene().about).bounds) - 5) < 1e-12);
+});
+
+test("arrows of velocities grow out of the surface, and say which velocity they mean", () => {
+  // As long as some radii, or a part of the scene where spheres are small; never endless.
+  assert.equal(arrowTime(1, 10, { full_speed: 2 }), 2.5);
+  assert.equal(arrowTime(0.01, 10, { full_speed: 2 }), 1);
+  assert.ok(arrowTime(0, 10, { full_speed: 0 }) > 0);
+  const roll = dice(4);
+  for (let k = 0; k < 50; k++) {
+    const [x, v, radius, time] = [three(roll, 9), three(roll, 3), roll(0.1, 2), roll(0.1, 5)];
+    const { from, to } = arrowEnds(x, radius, v, time);
+    assert.ok(Math.abs(length(minus(from, x)) - 0.96 * radius) < 1e-9);
+    assert.ok(Math.abs(length(minus(to, from)) - time * length(v)) < 1e-9);
+    near(velocityTo(x, radius, to, time), v, 1e-9);
+  }
+  assert.deepEqual(arrowEnds([1, 2, 3], 1, [0, 0, 0], 5), { from: [1, 2, 3], to: [1, 2, 3] });
+  assert.deepEqual(velocityTo([1, 2, 3], 1, [1, 2, 3], 5), [0, 0, 0]);
 });
 
 test("numbers of a kind have their points below one another", () => {

@@ -25,6 +25,20 @@ test("runs smoothly about one keyframe behind, and never beyond the newest", () 
   assert.ok(behind > 0 && behind < 2, `${behind}`);
 });
 
+test("never goes back, however late keyframes come and however seldom pictures are drawn", () => {
+  const line = new Timeline();
+  let late = 1;
+  let last = -Infinity;
+  for (let k = 0; k < 200; k++) {
+    late = (late * 48271) % 2147483647; // numbers that are the same in every run
+    // The speed changes too, by factors of a thousand.
+    if (late % 3) line.push(frame((line.newest?.t ?? 0) + (k % 70 < 35 ? 1 : 1000), k / 10));
+    if (line.advance((late % 5) / 16) === null) continue;
+    assert.ok(line.t >= last && line.t <= line.newest.t, `${line.t} after ${last}`);
+    last = line.t;
+  }
+});
+
 test("a pause ends exactly at the last keyframe", () => {
   const line = new Timeline();
   for (let k = 0; k < 30; k++) {

@@ -2,16 +2,11 @@
  * What the hands lay over the picture: rings, arrows, trails, and a ball that is not there yet.
  *
  * @typedef {import("./matrix.js").Vec3} Vec3
- * @typedef {[number, number, number]} Rgb parts from 0 to 1
- * @typedef {{side: number, x: Vec3, radius: number, color: Rgb, strength: number}} Mark
- * @typedef {{side: number, from: Vec3, to: Vec3, color: Rgb, strength: number}} Arrow
- * @typedef {{side: number, points: Float32Array, color: Rgb}} Path
- * @typedef {{side: number, x: Vec3, radius: number, color: Rgb}} Ghost
- * @typedef {{marks: Mark[], arrows: Arrow[], trails: Path[], ghost: Ghost | null,
- *   follow: number | null}} Annotations
+ * @typedef {Pick<import("./renderer.js").Picture, "marks" | "arrows" | "trails" | "ghost">} Annotations
  */
+import { arrowEnds } from "./arrows.js";
 import { unpack } from "./colors.js";
-import { add, length, scale } from "./matrix.js";
+import { length, sub } from "./matrix.js";
 import { everywhere } from "./pick.js";
 
 const COLORS = {
@@ -23,7 +18,7 @@ const COLORS = {
 export function annotate(hands) {
   const { scene, sides, theme } = hands;
   /** @type {Annotations} */
-  const overlay = { marks: [], arrows: [], trails: [], ghost: null, follow: null };
+  const overlay = { marks: [], arrows: [], trails: [], ghost: null };
   if (scene === null || sides.length === 0) return overlay;
   selection(hands, scene, overlay);
   const flash = hands.flash.parts(sides[0], scene, unpack(COLORS[theme].impulse));
@@ -33,7 +28,7 @@ export function annotate(hands) {
   if (next.ghost !== null) {
     const { position: x, velocity } = next.ghost;
     overlay.ghost = { side: 0, x, radius: next.radius, color: next.rgb };
-    arrow(overlay, x, add(x, scale(velocity, hands.time)), unpack(COLORS[theme].velocity));
+    arrow(overlay, arrowEnds(x, next.radius, velocity, hands.time), unpack(COLORS[theme].velocity));
   }
   return overlay;
 }
@@ -58,13 +53,12 @@ function selection(hands, scene, overlay) {
       overlay.trails.push({ side, points: hands.trails[side].points, color });
     }
   });
-  const { ball, tip } = hands.handle;
-  if (ball !== null) arrow(overlay, ball.x, tip, unpack(COLORS[theme].velocity));
-  if (hands.following) overlay.follow = selected;
+  const { handle } = hands;
+  if (handle.ball !== null) arrow(overlay, handle.arrow, unpack(COLORS[theme].velocity));
 }
 
-/** @param {Annotations} overlay @param {Vec3} from @param {Vec3} to @param {Rgb} color */
-function arrow(overlay, from, to, color) {
-  if (length([to[0] - from[0], to[1] - from[1], to[2] - from[2]]) === 0) return;
+/** @param {Annotations} overlay @param {{from: Vec3, to: Vec3}} ends @param {import("./colors.js").Rgb} color */
+function arrow(overlay, { from, to }, color) {
+  if (length(sub(to, from)) === 0) return;
   overlay.arrows.push({ side: 0, from, to, color, strength: 1 });
 }

@@ -6,12 +6,45 @@
  */
 import { MOTION, RAY } from "./glsl.js";
 import { LIGHT } from "./light.js";
+import { add, length, scale, sub } from "./matrix.js";
 import { Programs } from "./program.js";
 
 const AROUND = 10; // corners of the shaft
 const MESH = 9; // the attribute's place, behind those of the spheres
-const TYPICAL_LENGTH = 2.5; // median radii, at the typical speed
+const LONG = 5; // median radii, at the end of the speed scale, which is twice the usual speed,
+const FAR = 0.2; // or this part of the scene's reach, if that is more: then spheres are far apart
+const START = 0.96; // radii from the centre: the arrow grows out of the surface
 const THICKNESS = 0.13; // of the shaft, median radii; thinner on smaller spheres
+
+/**
+ * Simulated time whose way the arrow of a velocity shows: the same for all spheres of a scene.
+ * @param {number} radius the median @param {number} reach of the scene
+ * @param {{full_speed: number}} about
+ */
+export const arrowTime = (radius, reach, { full_speed }) =>
+  Math.max(LONG * radius, FAR * reach) / (full_speed || 1);
+
+/**
+ * Where the arrow of a velocity begins and ends; both at the centre of a sphere at rest.
+ * @typedef {import("./matrix.js").Vec3} Vec3
+ * @param {Vec3} x @param {number} radius @param {Vec3} v @param {number} time of an arrow
+ */
+export function arrowEnds(x, radius, v, time) {
+  const speed = length(v);
+  const from = speed > 0 ? add(x, scale(v, (START * radius) / speed)) : x;
+  return { from, to: add(from, scale(v, time)) };
+}
+
+/**
+ * The velocity whose arrow ends at a place; none inside the sphere.
+ * @param {Vec3} x @param {number} radius @param {Vec3} to @param {number} time @returns {Vec3}
+ */
+export function velocityTo(x, radius, to, time) {
+  const line = sub(to, x);
+  const size = length(line);
+  const beyond = size - START * radius;
+  return beyond > 0 ? scale(line, beyond / (size * time)) : [0, 0, 0];
+}
 
 /**
  * mesh: direction round the shaft, then the ring: 0 tail, 1 end of the shaft, 2 the head's rim,
@@ -50,7 +83,7 @@ const SWARM_VERTEX = `
 ${MOTION}
 ${ARROW}
 layout(location = 6) in float aRadius;
-uniform float uPerSpeed, uThick;
+uniform float uTime, uThick;
 uniform vec3 uColor;
 
 void main() {
@@ -60,8 +93,8 @@ void main() {
   float speed = length(v);
   vColor = uColor;
   vec3 ahead = speed > 0.0 ? v / speed : vec3(0);
-  vec3 from = x + 0.96 * aRadius * ahead;
-  arrow(from, from + uPerSpeed * v, min(uThick, 0.2 * aRadius));
+  vec3 from = x + ${START} * aRadius * ahead;
+  arrow(from, from + uTime * v, min(uThick, 0.2 * aRadius));
 }
 `;
 
@@ -81,17 +114,18 @@ ${RAY}
 ${LIGHT}
 in vec3 vPlace, vNormal;
 flat in vec3 vColor;
+uniform float uStrength;
 out vec4 color;
 
 void main() {
   float away = length(vPlace);
   vec3 toEye = -vPlace / away, n = normalize(vNormal);
-  color = vec4(fogged(lit(vColor, n, vPlace, toEye, 0.0), away), 1);
+  color = vec4(fogged(lit(vColor, n, vPlace, toEye, 0.0), away), 1) * uStrength;
 }
 `;
 
 /** @returns {{vertices: Float32Array, indices: Uint16Array}} */
-export function arrowMesh(around = AROUND) {
+function arrowMesh(around = AROUND) {
   const vertices = [];
   const indices = [];
   for (let k = 0; k < around; k++) {
@@ -138,16 +172,15 @@ export class Arrows {
   /** The velocity of every sphere. @param {Look} look */
   velocities(look) {
     const { gl, count } = this;
-    const { pair, about, theme, level } = look;
+    const { pair, theme } = look;
     const { n, typical } = pair.traits;
     const program = this.programs.get("swarm", { SHADOWS: "uShadow" in look.shadow });
     program.use();
     program.set(look.common);
     program.set(look.motion);
     program.set(look.shadow);
-    // The end of the speed scale is twice the usual speed.
-    const perSpeed = (2 * TYPICAL_LENGTH * typical) / about.full_speed;
-    program.set({ uPerSpeed: perSpeed, uThick: THICKNESS * typical, uColor: theme.arrow });
+    const uTime = look.options.arrows;
+    program.set({ uTime, uThick: THICKNESS * typical, uColor: theme.arrow, uStrength: 1 });
     pair.bind("arrows", () => this.#mesh());
     gl.drawElementsInstanced(gl.TRIANGLES, count, gl.UNSIGNED_SHORT, 0, n);
   }
@@ -158,7 +191,8 @@ export class Arrows {
    */
   draw(look, list) {
     const { gl, count } = this;
-    for (const { side, from, to, color } of list) {
+    gl.depthFunc(gl.LEQUAL);
+    for (const { side, from, to, color, strength } of list) {
       if (side !== look.side) continue;
       const program = this.programs.get("one", { SHADOWS: "uShadow" in look.shadow });
       program.use();
@@ -167,8 +201,14 @@ export class Arrows {
       // As thick as those of the spheres, yet never hair-thin on the screen.
       const pixel = (2 * look.camera.tangents.y * look.camera.distance) / look.camera.size.height;
       const thick = Math.max(1.25 * THICKNESS * look.pair.traits.typical, 1.6 * pixel);
-      program.set({ uFrom: from, uTo: to, uColor: color, uThick: thick });
+      program.set({ uFrom: from, uTo: to, uColor: color, uThick: thick, uStrength: strength });
       gl.bindVertexArray(this.array);
+      // Seen through, but not through itself: first its depth alone, then what is nearest.
+      if (strength < 1) {
+        gl.colorMask(false, false, false, false);
+        gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_SHORT, 0);
+        gl.colorMask(true, true, true, true);
+      }
       gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_SHORT, 0);
     }
   }

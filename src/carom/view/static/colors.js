@@ -13,13 +13,13 @@ export const unpack = (packed) => [
  * From slow to fast: along blue and yellow, which nearly everybody can tell apart, and always
  * lighter, so that it reads in grey too.
  */
-export const SPEED_SCALE = [0x4059d6, 0x4c8fe6, 0x55bccb, 0xb4d98a, 0xffe65a].map(unpack);
+const SPEED_SCALE = [0x4059d6, 0x4c8fe6, 0x55bccb, 0xb4d98a, 0xffe65a].map(unpack);
 
 /**
  * From few collisions to many: through purple and orange, for the same reasons, and never to be
  * taken for speeds.
  */
-export const COLLISION_SCALE = [0x5b2a86, 0x9c2f7f, 0xdb4f5f, 0xf98e4b, 0xfde7a0].map(unpack);
+const COLLISION_SCALE = [0x5b2a86, 0x9c2f7f, 0xdb4f5f, 0xf98e4b, 0xfde7a0].map(unpack);
 
 /** The scales of the colour modes that have one. */
 export const SCALES = { speed: SPEED_SCALE, collisions: COLLISION_SCALE };

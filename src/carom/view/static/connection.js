@@ -4,7 +4,8 @@ import { MAX_CREDITS, SOCKET_PATH, WRONG_TOKEN } from "./wire.js";
 
 const IN_FLIGHT = 2; // frames the server may send ahead: one on its way, one being drawn
 const PATIENCE = [250, 500, 1000, 2000]; // milliseconds between calls
-const SILENCE = 15_000; // milliseconds without a word while time runs, after which a line is dead
+/** Milliseconds without a word, after a call or while time runs, after which a line is dead. */
+const SILENCE = 15_000;
 const BUSY = 100; // milliseconds between two pictures; what goes beyond is no silence
 const KEY = "carom-token";
 
@@ -14,11 +15,13 @@ const KEY = "carom-token";
  */
 export function takeToken() {
   const found = new URLSearchParams(location.hash.slice(1)).get("token");
-  if (found !== null) {
-    sessionStorage.setItem(KEY, found);
-    history.replaceState(null, "", location.pathname);
+  if (found !== null) history.replaceState(null, "", location.pathname);
+  try {
+    if (found !== null) sessionStorage.setItem(KEY, found);
+    return found ?? sessionStorage.getItem(KEY) ?? "";
+  } catch {
+    return found ?? ""; // a browser that stores nothing: a reload needs the address once more
   }
-  return sessionStorage.getItem(KEY) ?? "";
 }
 
 /**
@@ -47,13 +50,15 @@ export class Connection {
     this.token = token;
     this.listener = listener;
     this.read = read;
-    this.calls = 0; // in a row that failed
+    this.failed = 0; // calls in a row
+    this.answered = false; // the server has said something on this line
     this.silence = 0; // milliseconds of drawing since something came last
     this.drawn = 0; // when the page drew last
     this.moving = false; // frames should be coming
     this.taken = 0; // frames that came since credit was last returned
-    /** @type {number | undefined} */ this.timer = undefined;
-    /** @type {WebSocket | null} */ this.socket = null;
+    /** Until the next call, or until a call without an answer is given up. @type {number | undefined} */
+    this.timer = undefined;
+    /** null between two calls. @type {WebSocket | null} */ this.socket = null;
     // A computer that wakes up need not wait for the next try.
     for (const sign of ["online", "pageshow", "visibilitychange"]) {
       addEventListener(sign, () => this.#hurry());
@@ -62,7 +67,6 @@ export class Connection {
   }
 
   call() {
-    this.timer = undefined;
     const socket = new WebSocket(`ws://${location.host}${SOCKET_PATH}`);
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
@@ -73,7 +77,9 @@ export class Connection {
     socket.onmessage = ({ data }) => this.#hear(data);
     socket.onclose = ({ code, reason }) => this.#lost(code, reason);
     this.socket = socket;
+    this.answered = false;
     this.silence = 0;
+    this.#wait(() => this.#hangUp(), SILENCE);
   }
 
   /** @param {string} message one of `say` */
@@ -98,8 +104,12 @@ export class Connection {
   /** @param {ArrayBuffer | string} data */
   #hear(data) {
     this.silence = 0;
-    if (this.calls !== -1) this.listener.state("open", "");
-    this.calls = -1;
+    if (!this.answered) {
+      this.answered = true;
+      this.failed = 0;
+      this.#wait(null);
+      this.listener.state("open", "");
+    }
     if (typeof data === "string") {
       for (const [key, value] of Object.entries(JSON.parse(data))) {
         this.listener.note(/** @type {keyof Notes} */ (key), value);
@@ -118,6 +128,8 @@ export class Connection {
 
   /** @param {number} code @param {string} reason */
   #lost(code, reason) {
+    this.#wait(null);
+    this.socket = null;
     this.moving = false;
     if (code === WRONG_TOKEN) {
       this.listener.state(
@@ -130,15 +142,19 @@ export class Connection {
       "waiting",
       reason ? `Not connected: ${reason}.` : "The simulation has ended. Waiting for it to return …",
     );
-    this.calls = Math.max(0, this.calls) + 1;
-    const wait = PATIENCE[Math.min(this.calls, PATIENCE.length) - 1];
-    this.timer = setTimeout(() => this.call(), wait);
+    this.#wait(() => this.call(), PATIENCE[Math.min(this.failed, PATIENCE.length - 1)]);
+    this.failed++;
   }
 
-  #hurry() {
-    if (this.timer === undefined || document.hidden) return;
+  /** Do one thing later, instead of what was to be done. @param {(() => void) | null} act @param {number} [ms] */
+  #wait(act, ms) {
     clearTimeout(this.timer);
-    this.call();
+    this.timer = act === null ? undefined : setTimeout(act, ms);
+  }
+
+  /** If the next call is only waited for, make it now. */
+  #hurry() {
+    if (this.socket === null && this.timer !== undefined && !document.hidden) this.call();
   }
 
   #hangUp() {

@@ -6,6 +6,7 @@ import { FASTEST, SLOWEST } from "./wire.js";
 
 const STEPS = 50; // of the speed slider, per power of ten
 const NOTCH = 3; // steps around 1× in which the slider catches
+const HOLDS = 800; // milliseconds after a wish during which the speed from before may still come
 
 /**
  * @typedef {object} Wishes what controls ask of the page, beside the actions of the keys
@@ -18,6 +19,7 @@ export class Controls {
   constructor(actions, wishes) {
     this.wishes = wishes;
     this.speed = 1;
+    this.asked = -Infinity; // when, in milliseconds
     this.slider = /** @type {HTMLInputElement} */ (at("speed"));
     this.slider.min = String(STEPS * Math.log10(SLOWEST));
     this.slider.max = String(STEPS * Math.log10(FASTEST));
@@ -59,12 +61,13 @@ export class Controls {
       announce(frame.reversed ? "Time runs backwards" : "Time runs forwards");
       this.wishes.layout();
     }
-    if (document.activeElement !== this.slider) this.#show(frame.speed);
+    if (performance.now() - this.asked > HOLDS) this.#show(frame.speed);
   }
 
   /** Ask for a speed. @param {number} speed */
   ask(speed) {
     const limited = Math.min(FASTEST, Math.max(SLOWEST, speed));
+    this.asked = performance.now();
     this.#show(limited);
     this.wishes.speed(limited);
   }

@@ -55,25 +55,21 @@ export class Crowd {
     hidden.fill(0);
     const per = size.map((s, k) => cells[k] / s);
     const volume = 1 / (per[0] * per[1] * per[2]);
-    const place = [0, 0, 0];
-    const share = [0, 0, 0];
+    const [nx, ny] = cells;
+    // Along an axis, in cells, and never so far out that the next cell would be missing.
+    const along = (/** @type {number} */ i, /** @type {number} */ k) =>
+      Math.min(cells[k] - 1.001, Math.max(0, (position[3 * i + k] - low[k]) * per[k] - 0.5));
     for (let i = 0; i < radius.length; i++) {
       const area = (Math.PI * radius[i] * radius[i]) / volume;
-      for (let k = 0; k < 3; k++) {
-        const at = (position[3 * i + k] - low[k]) * per[k] - 0.5;
-        const inside = Math.min(cells[k] - 1.001, Math.max(0, at));
-        place[k] = Math.floor(inside);
-        share[k] = inside - place[k];
-      }
-      for (let corner = 0; corner < 8; corner++) {
-        let weight = area;
-        let cell = 0;
-        for (let k = 2; k >= 0; k--) {
-          const up = (corner >> k) & 1;
-          weight *= up ? share[k] : 1 - share[k];
-          cell = cell * cells[k] + place[k] + up;
-        }
-        hidden[cell] += weight;
+      const [x, y, z] = [along(i, 0), along(i, 1), along(i, 2)];
+      const [a, b, c] = [Math.floor(x), Math.floor(y), Math.floor(z)];
+      const [right, far, high] = [x - a, y - b, z - c];
+      // Shared out among the eight cells around it.
+      for (let k = 0; k < 4; k++) {
+        const row = a + nx * (b + (k & 1) + ny * (c + (k >> 1)));
+        const part = area * (k & 1 ? far : 1 - far) * (k >> 1 ? high : 1 - high);
+        hidden[row] += part * (1 - right);
+        hidden[row + 1] += part * right;
       }
     }
   }

@@ -17,10 +17,6 @@ export class Dialog {
     });
   }
 
-  get isOpen() {
-    return this.place.open;
-  }
-
   open() {
     // showModal keeps the focus inside, makes Escape close it, and gives the focus back.
     if (!this.place.open) this.place.showModal();

@@ -22,3 +22,8 @@ export function element(tag, attributes = {}, ...children) {
 export function put(place, text) {
   if (place.textContent !== text) place.textContent = text;
 }
+
+/** Show whether a button is pressed. @param {HTMLElement} button @param {boolean} on */
+export function press(button, on) {
+  if (button.getAttribute("aria-pressed") !== String(on)) button.setAttribute("aria-pressed", String(on));
+}

@@ -4,8 +4,8 @@
  * @typedef {import("./matrix.js").Vec3} Vec3
  * @typedef {import("./protocol.js").Scene} Scene
  * @typedef {import("./tools.js").Side} Side
- * @typedef {import("./annotations.js").Arrow} Arrow
- * @typedef {import("./annotations.js").Mark} Mark
+ * @typedef {import("./renderer.js").ArrowMark} ArrowMark
+ * @typedef {import("./renderer.js").Mark} Mark
  * @typedef {{t: number, i: number, j: number, impulse: number[]}} Event j < 0: wall −1 − j
  */
 import { nearestImage, placeOf } from "./interpolation.js";
@@ -124,7 +124,7 @@ export class Flash {
   /**
    * @param {Side} side @param {Scene} scene
    * @param {[number, number, number]} color
-   * @returns {{marks: Mark[], arrows: Arrow[]}}
+   * @returns {{marks: Mark[], arrows: ArrowMark[]}}
    */
   parts({ first, second, t }, scene, color) {
     const { event, strength } = this;
@@ -140,9 +140,8 @@ export class Flash {
       const wide = radius * (1 + WIDE * ripple);
       marks.push({ side: 0, x, radius: wide, color, strength: (1 - ripple) ** 2 });
     }
-    const { from, to } = this.arrow;
     if (event.impulse.every((part) => part === 0)) return { marks, arrows: [] };
-    const end = add(from, scale(sub(to, from), this.calm ? 1 : this.#rest));
-    return { marks, arrows: [{ side: 0, from, to: end, color, strength }] };
+    // It stays clear as long as time stands, and then fades away.
+    return { marks, arrows: [{ side: 0, ...this.arrow, color, strength: this.calm ? 1 : this.#rest }] };
   }
 }

@@ -5,14 +5,18 @@
  * @typedef {import("./matrix.js").Vec3} Vec3
  * @typedef {import("./camera.js").Camera} Camera
  */
-import { add, length, scale, sub } from "./matrix.js";
+import { arrowEnds, velocityTo } from "./arrows.js";
+import { add, length, scale } from "./matrix.js";
 import { short } from "./numbers.js";
 
 const EDGE = 14; // pixels from the border of the viewport where the handle stops
 const KEY = 0.04; // of the scene's high speed, per arrow key
 const PATIENCE = 1500; // milliseconds until a wish that changed nothing is given up
 
-/** @typedef {{x: number, y: number, width: number, height: number}} Viewport */
+/**
+ * @typedef {{x: number, y: number, width: number, height: number}} Viewport
+ * @typedef {{x: Vec3, v: Vec3, radius: number, viewport: Viewport}} Ball
+ */
 
 /** A few words beside a place of the picture, read out as they change. */
 export class Label {
@@ -55,7 +59,7 @@ export class Handle {
     this.time = 1; // simulated time of an arrow
     this.fullSpeed = 1;
     this.label = new Label(parent);
-    /** Where and how fast the sphere is. @type {{x: Vec3, v: Vec3, viewport: Viewport} | null} */
+    /** Where and how fast the sphere is. @type {Ball | null} */
     this.ball = null;
     /** Being dragged: pixels from the pointer to the tip, and the tip that was taken. */
     /** @type {{dx: number, dy: number, tip: Vec3, pointer: number} | null} */ this.drag = null;
@@ -80,14 +84,15 @@ export class Handle {
     return this.wanted ?? this.ball?.v ?? [0, 0, 0];
   }
 
-  /** @returns {Vec3} */
-  get tip() {
-    return add(this.ball?.x ?? [0, 0, 0], scale(this.velocity, this.time));
+  /** From the sphere's surface to the tip. @returns {{from: Vec3, to: Vec3}} */
+  get arrow() {
+    const { x, radius } = this.ball ?? { x: /** @type {Vec3} */ ([0, 0, 0]), radius: 0 };
+    return arrowEnds(x, radius, this.velocity, this.time);
   }
 
   /**
    * The sphere to hold, or null. True if the arrow looks different now.
-   * @param {{x: Vec3, v: Vec3, viewport: Viewport} | null} ball @param {number} epoch
+   * @param {Ball | null} ball @param {number} epoch
    */
   hold(ball, epoch) {
     const shown = this.ball !== null;
@@ -121,7 +126,7 @@ export class Handle {
 
   #draw() {
     const { ball, element } = this;
-    const seen = ball === null ? null : this.camera.project(this.tip);
+    const seen = ball === null ? null : this.camera.project(this.arrow.to);
     element.hidden = seen === null || seen.depth <= 0;
     if (ball === null || seen === null || element.hidden) return;
     const { width, height } = ball.viewport;
@@ -138,13 +143,14 @@ export class Handle {
     const { element } = this;
     element.addEventListener("pointerdown", (event) => {
       if (this.ball === null || event.button !== 0) return;
-      const seen = this.camera.project(this.tip);
+      const tip = this.arrow.to;
+      const seen = this.camera.project(tip);
       const corner = this.#corner;
       element.setPointerCapture(event.pointerId);
       this.drag = {
         dx: corner.x + seen.x - event.clientX,
         dy: corner.y + seen.y - event.clientY,
-        tip: this.tip,
+        tip,
         pointer: event.pointerId,
       };
     });
@@ -152,10 +158,10 @@ export class Handle {
       if (this.drag === null || this.ball === null) return;
       const { dx, dy, tip } = this.drag;
       const corner = this.#corner;
-      // In the plane through the tip that faces the eye: the part along the view stays.
+      // In the plane through the tip that faces the eye.
       const [x, y] = [event.clientX + dx - corner.x, event.clientY + dy - corner.y];
       const end = this.camera.onPlane(x, y, tip);
-      this.wanted = scale(sub(end, this.ball.x), 1 / this.time);
+      this.wanted = velocityTo(this.ball.x, this.ball.radius, end, this.time);
     });
     element.addEventListener("pointerup", () => {
       if (this.drag === null) return;

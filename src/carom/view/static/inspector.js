@@ -1,26 +1,10 @@
 /** The numbers of the selected sphere, what can be done with it, and what the next ball is like. */
+import { element as make, press, put } from "./dom.js";
 import { length } from "./matrix.js";
 import { count, short } from "./numbers.js";
 
 const PERIOD = 100; // milliseconds between two readings
 const PLACES = 4; // digits after which a scene's size no longer counts
-
-/**
- * @template {keyof HTMLElementTagNameMap} K
- * @param {K} tag @param {Record<string, string>} [attributes] @param {...(Node | string)} children
- * @returns {HTMLElementTagNameMap[K]}
- */
-function make(tag, attributes = {}, ...children) {
-  const element = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  element.append(...children);
-  return element;
-}
-
-/** @param {HTMLElement} element @param {string} text */
-function put(element, text) {
-  if (element.textContent !== text) element.textContent = text;
-}
 
 /** @param {HTMLElement} element @param {boolean} hidden */
 function hide(element, hidden) {
@@ -142,12 +126,13 @@ export class Inspector {
       put(this.title, twin ? `Sphere ${selected}, in ticks` : `Sphere ${selected}`);
       this.#read(selected, sphere, scene);
     }
+    // Moving the camera by hand ends following, too.
+    press(this.follow, hands.isOn("follow"));
+    press(this.trail, hands.isOn("trail"));
     if (!changed && !atOnce) return;
     hide(this.hint, selected !== null);
     hide(this.numbers, selected === null);
     hide(this.actions, selected === null);
-    this.follow.setAttribute("aria-pressed", String(hands.isOn("follow")));
-    this.trail.setAttribute("aria-pressed", String(hands.isOn("trail")));
     hide(this.form, !hands.isOn("add"));
     for (const [input, value] of /** @type {[HTMLInputElement, number][]} */ ([
       [this.radius, hands.next.radius],

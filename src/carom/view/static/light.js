@@ -85,7 +85,7 @@ float lampSeen(vec3 p) { return 1.0; }
 `;
 
 /** How much light is left in a crowd of spheres; 1 where there is none. */
-export const CROWD = `
+const CROWD = `
 #ifdef CROWD
 uniform mediump sampler3D uCrowd;
 uniform mat4 uToCrowd;      // from eye space

@@ -1,4 +1,5 @@
 /** Ties the parts of the page together. */
+import { Banners } from "./banners.js";
 import { Camera } from "./camera.js";
 import { Connection, takeToken } from "./connection.js";
 import { Controls, announce } from "./controls.js";
@@ -46,6 +47,7 @@ class Page {
     const fit = () => this.camera.glide(() => this.#fit());
     this.wanted = readLink(location.hash); // the scene that the address asks for
     const token = takeToken();
+    this.banners = new Banners();
     this.canvas = /** @type {HTMLCanvasElement} */ (at("view"));
     this.renderer = new Renderer(this.canvas);
     this.camera = new Camera();
@@ -55,9 +57,11 @@ class Page {
     /** @type {Notes["settings"] | null} */ this.settings = null;
     /** @type {import("./split.js").Viewport[]} */ this.viewports = [];
     this.stale = true; // something other than time, camera and hands has changed
+    /** @type {{t: number, second?: Keyframe, twin?: Keyframe, camera: number, hands: number}} */
     this.drawn = { t: NaN, camera: -1, hands: -1 };
     this.before = performance.now();
     this.looked = -Infinity; // when slow things were last looked at
+    this.stumbled = ""; // why the last picture could not be drawn
     const changed = () => (this.stale = true);
     this.theme = new Theme(changed);
     this.look = new Look(changed);
@@ -78,13 +82,18 @@ class Page {
       layout: () => this.#resize(),
     });
     this.#watch();
-    this.connection = new Connection(token, {
+    this.connection = this.#connect(token);
+    requestAnimationFrame((now) => this.#tick(now));
+  }
+
+  /** @param {string} token @returns {Connection} */
+  #connect(token) {
+    return new Connection(token, {
       scene: (scene) => this.#setScene(scene),
       frame: (frame) => this.#take(frame),
       note: (key, value) => this.#hear({ [key]: value }),
       state: (state, sentence) => this.#state(state, sentence),
     });
-    requestAnimationFrame((now) => this.#tick(now));
   }
 
   /** Listen to the window. */
@@ -178,11 +187,12 @@ class Page {
     this.parameters.setOrigin(about.origin);
     this.laws.setScene(scene, fresh);
     this.look.setScene(scene, other);
-    this.hands.setScene(scene);
-    this.plots.setScene(scene);
+    this.hands.setScene(scene, fresh);
+    this.plots.setScene(scene, fresh);
     if (other) this.#resize();
     if (other || (fresh && !this.camera.moved)) this.#fit();
     this.#obeyAddress();
+    this.banners.fail("page", "");
     this.stale = true;
   }
 
@@ -201,7 +211,7 @@ class Page {
 
   /** @param {Partial<Notes>} note with one key */
   #hear(note) {
-    if (note.failure !== undefined) this.#say("failure", note.failure);
+    if (note.failure !== undefined) this.banners.fail("simulation", note.failure);
     if (note.settings !== undefined) this.#setSettings(note.settings);
     if (note.event !== undefined) this.hands.showEvent(note.event);
     if (note.walls !== undefined) this.plots.walls(note.walls);
@@ -275,25 +285,28 @@ class Page {
   /** @param {"open" | "waiting" | "refused"} state @param {string} sentence */
   #state(state, sentence) {
     document.body.dataset.connection = state;
-    this.#say("connection", sentence);
-    if (state === "open") return;
-    this.timeline.clear();
-    this.twin.clear();
-  }
-
-  /** @param {string} id @param {string} sentence */
-  #say(id, sentence) {
-    put(at(id), sentence);
-    at(id).hidden = sentence === "";
+    this.banners.say("connection", sentence);
   }
 
   /** @param {number} now */
   #tick(now) {
     requestAnimationFrame((next) => this.#tick(next));
+    this.connection.returnCredit();
+    try {
+      this.#show(now);
+      this.stumbled = "";
+    } catch (error) {
+      // Once: the next picture will very likely fail as this one did.
+      if (String(error) !== this.stumbled) reportError(error);
+      this.stumbled = String(error);
+    }
+  }
+
+  /** Draw what there is to see now. @param {number} now */
+  #show(now) {
     const seconds = Math.min(0.25, (now - this.before) / 1000);
     this.before = now;
     const pair = this.timeline.advance(seconds);
-    this.connection.returnCredit();
     if (pair === null || this.scene === null) return;
     const { t } = this.timeline;
     const sides = this.#sides(pair, t);
@@ -301,10 +314,13 @@ class Page {
     this.readout.show(t, now);
     this.plots.show(now);
     if (now - this.looked > SLOWLY) this.#glance(now);
-    const next = { t, camera: this.camera.version, hands: this.hands.version };
+    const [{ second }, beside] = sides;
+    const next = { t, second, twin: beside?.second, camera: this.camera.version, hands: this.hands.version };
     const { drawn } = this;
-    const same = t === drawn.t && next.camera === drawn.camera && next.hands === drawn.hands;
-    if (same && !this.stale) return;
+    // While time stands another keyframe of the same moment may hold other velocities.
+    const moved = t !== drawn.t || second !== drawn.second || next.twin !== drawn.twin;
+    const seen = moved || next.camera !== drawn.camera || next.hands !== drawn.hands;
+    if (!seen && !this.stale) return;
     this.renderer.draw(this.#picture(sides));
     this.drawn = next;
     this.stale = false;
@@ -322,10 +338,10 @@ class Page {
 
   /** @param {import("./tools.js").Side[]} sides @returns {import("./renderer.js").Picture} */
   #picture(sides) {
-    const { marks, arrows, trails, ghost } = this.hands.overlay();
     const { color, full, wire } = this.look;
-    const options = { color, full, wire, theme: this.theme.name, arrows: this.hands.isOn("arrows") };
-    return { sides, camera: this.camera, options, marks, arrows, trails, ghost };
+    const arrows = this.hands.isOn("arrows") ? this.hands.time : 0;
+    const options = { color, full, wire, theme: this.theme.name, arrows };
+    return { sides, camera: this.camera, options, ...this.hands.overlay() };
   }
 
   /** The picture as a file, in its middle what the page shows beside its panels. */
@@ -344,8 +360,9 @@ class Page {
     this.looked = now;
     this.laws.gravity.turnCompass();
     this.hands.theme = this.theme.name;
+    // A hint how to select one has its place where there is room.
     const chosen = this.hands.selected !== null || this.hands.isOn("add");
-    at("section-inspector").hidden = !chosen;
+    at("section-inspector").hidden = NARROW.matches && !chosen;
     const { newest } = this.timeline;
     if (newest !== undefined) this.look.watch(newest.counts);
     if (this.settings?.comparing) {

@@ -5,31 +5,18 @@
  * @typedef {import("./protocol.js").Scene} Scene
  * @typedef {{position: Vec3, velocity: Vec3, radius: number, mass: number, color: number}} Ball
  */
+import { velocityTo } from "./arrows.js";
 import { SPECIES } from "./colors.js";
-import { length, scale, sub } from "./matrix.js";
-import { buildWalls } from "./walls.js";
 
 /** As 0xRRGGBB. @param {number[]} rgb parts from 0 to 1 */
-export const pack = ([r, g, b]) =>
+const pack = ([r, g, b]) =>
   (Math.round(255 * r) << 16) | (Math.round(255 * g) << 8) | Math.round(255 * b);
 
-/** The value in the middle; NaN of none. @param {number[]} values */
+/** The value in the middle; NaN of none. @param {Iterable<number>} values */
 export function median(values) {
   const sorted = Float64Array.from(values).sort();
   return sorted.length === 0 ? NaN : sorted[sorted.length >> 1];
 }
-
-/** Radius around its middle of everything that is drawn of a scene. @param {Scene["about"]} about */
-export function reachOf(about) {
-  const { center, points, margin } = buildWalls(about).bounds;
-  return margin + Math.max(...points.map((point) => length(sub(point, center))), 1e-30);
-}
-
-/**
- * Simulated time whose way a velocity's arrow shows: high speeds reach two fifths of the scene.
- * @param {number} reach of the scene @param {Scene["about"]} about
- */
-export const arrowTime = (reach, { full_speed }) => (0.4 * reach) / (full_speed || 1);
 
 export class NewBall {
   constructor() {
@@ -39,12 +26,12 @@ export class NewBall {
     /** @type {{position: Vec3, velocity: Vec3} | null} */ this.ghost = null;
   }
 
-  /** Like the free spheres of a scene. @param {Scene} scene */
-  resemble(scene) {
+  /** Like the free spheres of a scene. @param {Scene} scene @param {number} reach of the scene */
+  resemble(scene, reach) {
     const free = [...scene.mass.keys()].filter((i) => Number.isFinite(scene.mass[i]));
     const radius = median(free.map((i) => scene.radius[i]));
     const mass = median(free.map((i) => scene.mass[i]));
-    this.radius = radius > 0 ? Number(radius.toPrecision(4)) : 0.04 * reachOf(scene.about);
+    this.radius = radius > 0 ? Number(radius.toPrecision(4)) : 0.04 * reach;
     this.mass = mass > 0 ? Number(mass.toPrecision(4)) : 1;
   }
 
@@ -61,7 +48,7 @@ export class NewBall {
   /** Throw it so that its arrow ends here. @param {Vec3} tip @param {number} time of an arrow */
   aim(tip, time) {
     if (this.ghost === null) return;
-    this.ghost.velocity = scale(sub(tip, this.ghost.position), 1 / time);
+    this.ghost.velocity = velocityTo(this.ghost.position, this.radius, tip, time);
   }
 
   /** Let go: what is to be added. @returns {Ball | null} */

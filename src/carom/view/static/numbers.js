@@ -3,7 +3,7 @@
 const SUPERSCRIPTS = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
 /** @param {number} power */
-export const superscript = (power) =>
+const superscript = (power) =>
   (power < 0 ? "⁻" : "") + [...String(Math.abs(power))].map((d) => SUPERSCRIPTS[Number(d)]).join("");
 
 /** Groups of three with thin spaces: 3 141 592. @param {number} value */
@@ -33,6 +33,7 @@ export function short(value, digits = 3) {
 /** A power of ten: 3 × 10⁻¹⁵. @param {number} value */
 export function scientific(value) {
   if (value === 0) return "0";
+  if (!Number.isFinite(value)) return "–";
   const [mantissa, power] = Math.abs(value).toExponential(0).split("e");
   return `${mantissa} × 10${superscript(Number(power))}`;
 }

@@ -31,9 +31,15 @@ export class Parameters {
     /** @type {Entry[]} */ this.catalogue = [];
     /** @type {Origin | null} */ this.origin = null;
     /** @type {Record<string, Value>} */ this.values = {};
+    /** Changed, but not asked for yet. @type {Record<string, Value>} */ this.wishes = {};
     /** @type {Row[]} */ this.rows = [];
     this.built = "";
-    this.make = settled((/** @type {string} */ name) => make(name, this.values), WAIT);
+    this.ask = settled((/** @type {string} */ name) => {
+      if (name !== this.built) return; // another scene has come meanwhile
+      Object.assign(this.values, this.wishes);
+      this.wishes = {};
+      make(name, this.values);
+    }, WAIT);
   }
 
   /** @param {Entry[]} catalogue */
@@ -59,6 +65,7 @@ export class Parameters {
 
   /** Back to what runs: a wish was refused. */
   revert() {
+    this.wishes = {};
     this.#show(true);
   }
 
@@ -67,8 +74,8 @@ export class Parameters {
     if (this.origin === null) return;
     const entry = this.catalogue.find(({ name }) => name === this.origin?.name);
     for (const option of entry?.options ?? []) {
-      const value = this.origin.options[option.name] ?? option.default;
-      this.values[option.name] = value;
+      this.values[option.name] = this.origin.options[option.name] ?? option.default;
+      const value = this.wishes[option.name] ?? this.values[option.name];
       this.rows.find(({ name }) => name === option.name)?.show(value, force);
     }
   }
@@ -77,6 +84,7 @@ export class Parameters {
   #build(entry) {
     this.built = entry.name;
     this.values = {};
+    this.wishes = {};
     this.rows = entry.options.map((option) => this.#row(option));
     this.place.replaceChildren(...this.rows.map(({ place }) => place));
   }
@@ -85,8 +93,8 @@ export class Parameters {
   #row(option) {
     const { name, type } = option;
     const take = (/** @type {Value} */ value) => {
-      this.values[name] = value;
-      this.make(this.built);
+      this.wishes[name] = value;
+      this.ask(this.built);
     };
     if (type === "bool") return switchRow(option, take);
     if (type === "str") return textRow(option, take);

@@ -48,15 +48,14 @@ export class Plots {
     container.replaceChildren(...this.sections.map(({ details }) => details));
   }
 
-  /** @param {Scene} scene */
-  setScene(scene) {
-    const other = scene.about.key !== this.scene?.about.key;
+  /** @param {Scene} scene @param {boolean} fresh whether it is another one, not the same with other spheres */
+  setScene(scene, fresh) {
     if (scene.n !== this.scene?.n) this.frame = null;
     this.scene = scene;
     this.speeds.setScene(scene);
     this.enskog = enskog(scene);
     this.parts.pressure.details.hidden = scene.about.walls.length === 0;
-    if (other) this.clear();
+    if (fresh) this.clear();
     this.pressure = null;
   }
 

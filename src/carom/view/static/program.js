@@ -73,11 +73,6 @@ export class Program {
     gl.useProgram(program);
   }
 
-  /** @param {string} name */
-  attribute(name) {
-    return this.gl.getAttribLocation(this.program, name);
-  }
-
   /**
    * Set uniforms by name: numbers, vectors as arrays, 4 × 4 matrices as Float32Array(16),
    * whole numbers as {int: number}, lists of 3-vectors as {list: number[]}.

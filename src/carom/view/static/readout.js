@@ -20,7 +20,7 @@ export class Readout {
   /** @param {import("./protocol.js").Keyframe} frame */
   push(frame) {
     const before = this.past.at(-1);
-    if (before !== undefined && frame.collisions < before.collisions) this.past = [];
+    if (frame.scene !== this.last?.scene || frame.collisions < (before?.collisions ?? 0)) this.past = [];
     this.past.push({ clock: frame.clock, collisions: frame.collisions });
     while (this.past.length > 2 && frame.clock - this.past[0].clock > WINDOW) this.past.shift();
     if (!frame.playing || frame.speed !== this.last?.speed || frame.epoch !== this.last.epoch) {

@@ -15,13 +15,13 @@
  * @property {number} full energy, speed or count at the end of the colour scale
  * @property {boolean} wire
  * @property {"dark" | "light"} theme
- * @property {boolean} arrows velocity arrows on all spheres
+ * @property {number} arrows on all spheres, as long as the way in this simulated time; 0 for none
  *
  * @typedef {{x: number, y: number, width: number, height: number}} Viewport pixels of the page,
  *   y down from the top of the canvas
  * @typedef {{first: Keyframe, second: Keyframe, t: number, viewport: Viewport}} Side
  * @typedef {{side: number, x: Vec3, radius: number, color: Vec3, strength: number}} Mark
- * @typedef {{side: number, from: Vec3, to: Vec3, color: Vec3}} ArrowMark
+ * @typedef {{side: number, from: Vec3, to: Vec3, color: Vec3, strength: number}} ArrowMark
  * @typedef {{side: number, points: Float32Array, color: Vec3}} Trail oldest first, NaN: a gap
  * @typedef {{side: number, x: Vec3, radius: number, color: Vec3}} Ghost
  *
@@ -192,7 +192,7 @@ export class Renderer {
     gl.enable(gl.DEPTH_TEST);
     if (!options.wire) this.spheres.draw(look);
     gl.depthMask(true);
-    if (options.arrows) arrows.velocities(look);
+    if (options.arrows > 0) arrows.velocities(look);
     arrows.draw(look, picture.arrows);
     gl.depthMask(false);
     room.lines(look);

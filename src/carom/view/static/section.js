@@ -1,4 +1,5 @@
 /** One plot: a heading that opens and closes it, a canvas, its key, and what it says in words. */
+import { element, put as write } from "./dom.js";
 
 /**
  * @typedef {object} Series
@@ -15,16 +16,9 @@
  * @property {string} [now] the number beside the heading
  */
 
-/** @param {string} tag @param {string} kind */
-function element(tag, kind) {
-  const made = document.createElement(tag);
-  made.className = kind;
-  return made;
-}
-
-/** @param {HTMLElement} place @param {string} text */
+/** @param {HTMLElement} place @param {string} text "" hides it */
 function put(place, text) {
-  if (place.textContent !== text) place.textContent = text;
+  write(place, text);
   place.hidden = text === "";
 }
 
@@ -35,22 +29,17 @@ export class Section {
     this.render = render;
     this.drawn = -Infinity; // when, in milliseconds
     this.changed = true; // something is not on the screen yet
-    this.details = /** @type {HTMLDetailsElement} */ (element("details", "plot"));
+    this.canvas = element("canvas", { role: "img", "aria-label": title });
+    this.now = element("span", { class: "now" });
+    this.key = element("ul", { class: "series" });
+    this.words = element("p", { class: "words" });
+    this.note = element("p", { class: "note" });
+    const summary = element("summary", {}, element("h3", {}, title), this.now);
+    const content = element("div", { class: "content" }, this.canvas, this.key, this.words, this.note);
+    this.details = element("details", { class: "plot" }, summary, content);
     this.details.open = open;
-    this.canvas = /** @type {HTMLCanvasElement} */ (document.createElement("canvas"));
-    this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", title);
-    const heading = document.createElement("h3");
-    heading.textContent = title;
-    this.now = element("span", "now");
-    this.key = element("ul", "series");
-    this.words = element("p", "words");
-    this.note = element("p", "note");
-    const summary = document.createElement("summary");
-    summary.append(heading, this.now);
-    const content = element("div", "content");
-    content.append(this.canvas, this.key, this.words, this.note);
-    this.details.append(summary, content);
+    this.width = 0; // as last laid out: asking for it would lay out the page at once
+    new ResizeObserver(([{ contentRect }]) => (this.width = contentRect.width)).observe(this.details);
     this.details.addEventListener("toggle", () => this.#hurry());
     new ResizeObserver(() => this.#hurry()).observe(this.canvas);
   }
@@ -62,7 +51,7 @@ export class Section {
 
   /** Is it seen by anybody? */
   get open() {
-    return this.details.open && this.details.clientWidth > 0;
+    return this.details.open && this.width > 0;
   }
 
   /** @param {number} limit milliseconds: drawn since then is soon enough */
@@ -105,9 +94,8 @@ export class Section {
   /** @param {number} k @param {Series} series */
   #row(k, { name, color, dash, value = "" }) {
     if (this.key.children.length <= k) {
-      const made = document.createElement("li");
-      made.append(element("span", "key"), element("span", "name"), element("span", "value"));
-      this.key.append(made);
+      const parts = ["key", "name", "value"].map((kind) => element("span", { class: kind }));
+      this.key.append(element("li", {}, ...parts));
     }
     const [mark, label, number] = /** @type {Iterable<HTMLElement>} */ (this.key.children[k].children);
     mark.style.setProperty("--key", `var(${color})`);

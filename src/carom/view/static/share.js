@@ -36,6 +36,7 @@ export class Share {
   /** @param {string} title @param {import("./link.js").Origin | null} origin */
   open(title, origin) {
     this.title = title;
+    this.blob = null; // the one from before shows another moment
     this.link.place.hidden = origin === null;
     this.link.text.value = formatLink(location.origin + location.pathname, this.needs.token, origin);
     this.preview.width = innerWidth;

@@ -8,9 +8,9 @@
 import { BOX, FILL, KIND, LINE, SHAPE_WORDS, STROKE } from "./sketch_protocol.js";
 
 /** Which side of a shape an item is: the low half of its last word. */
-export const WHOLE = 0;
-export const NEAR = 1;
-export const FAR = 2;
+const WHOLE = 0;
+const NEAR = 1;
+const FAR = 2;
 
 const KINDS = /** @type {Kind[]} */ (["spheres", "faces", "lines"]);
 const [SPHERES, FACES, LINES] = [0, 1, 2];

@@ -25,13 +25,11 @@ import {
   VERSION,
 } from "./wire.js";
 
-export const SPHERE = 0;
 export const BOX = 1;
 export const LINE = 2;
 export const SHAPE_WORDS = 16;
 export const FILL = 12;
 export const STROKE = 13;
-export const WEIGHT = 14;
 export const KIND = 15;
 
 const SHEET_BYTES = 24;

@@ -133,7 +133,7 @@ export class Speeds {
       const y = velocity[at + 1] - dy;
       const z = velocity[at + 2] - dz;
       const own = mass[i];
-      const tied = total / (total - own);
+      const tied = total > own ? total / (total - own) : 1;
       const sum = (tiedX ? tied : 1) * x * x + (tiedY ? tied : 1) * y * y + (tiedZ ? tied : 1) * z * z;
       into[j] = Math.sqrt((own * sum) / kT);
     }
@@ -144,13 +144,14 @@ export class Speeds {
   histogram(frame) {
     this.offer(frame);
     const { buffer, law } = this;
+    const alone = this.free.length === 1 && this.axes.length === 3; // relative to itself it rests
     let n = this.each;
     const kT = this.free.length > 0 ? this.#look(frame, buffer.subarray(0, n)) : 0;
-    const still = !(kT > 0);
+    const still = alone || !(kT > 0);
     if (still) n = 0;
     else n = this.#gather((2 * frame.collisions) / this.free.length, n);
     const range = Math.min(RANGE, law?.limit ?? RANGE);
-    const tied = this.axes.length === 3 ? this.total / (this.total - this.mass[0]) : 1;
+    const tied = this.axes.length === 3 && this.free.length > 1 ? this.total / (this.total - this.mass[0]) : 1;
     const unit = this.equal && !still ? Math.sqrt(kT / (this.mass[0] * tied)) : 1;
     const width = (range / BARS) * unit;
     const bars = new Float64Array(BARS);

@@ -54,7 +54,7 @@ export function gammaTail(a, x) {
 export const chiSquareTail = (x, df) => gammaTail(df / 2, x / 2);
 
 /** @param {number} a @param {number} b */
-export const logBeta = (a, b) => logGamma(a) + logGamma(b) - logGamma(a + b);
+const logBeta = (a, b) => logGamma(a) + logGamma(b) - logGamma(a + b);
 
 /**
  * The beta distribution: chance that a variable with density ∝ s^(a-1) (1-s)^(b-1) is below `s`.

@@ -5,7 +5,7 @@
  */
 
 const KEPT = 12;
-const BREAK = 0.5; // seconds without a keyframe, after which motion jumps instead of sliding
+export const BREAK = 0.5; // seconds without a keyframe, after which motion jumps instead of sliding
 const DELAY = 1.25; // keyframes; one to stand between two, the rest for late ones
 const PULL = 6; // per second: how firmly the clock is drawn to its place
 
@@ -62,6 +62,7 @@ export class Timeline {
     const newest = keyframes.at(-1);
     if (newest === undefined) return null;
     this.age += seconds;
+    const before = this.t;
     if (this.rate === 0) this.t = newest.t;
     else if (newest.playing) {
       const place = newest.t + this.rate * (this.age - DELAY * this.interval);
@@ -69,7 +70,8 @@ export class Timeline {
       this.t += (place - this.t) * Math.min(1, PULL * seconds);
     } else this.t += Math.max(this.rate * seconds, 0.1 * (newest.t - this.t));
     if (newest.t - this.t < 1e-3 * this.rate * this.interval) this.t = newest.t;
-    this.t = Math.min(newest.t, Math.max(keyframes[0].t, this.t));
+    // A keyframe that came late draws the clock back: then it stands a while, and never goes back.
+    this.t = Math.min(newest.t, Math.max(keyframes[0].t, before, this.t));
     let k = keyframes.length - 1;
     while (k > 0 && keyframes[k - 1].t > this.t) k--;
     return [keyframes[Math.max(k - 1, 0)], keyframes[k]];

@@ -1,5 +1,7 @@
 /** The buttons of the hands' tools: every `[data-tool]` of the page. */
 
+import { press } from "./dom.js";
+
 /** @typedef {import("./tools.js").Tool} Tool */
 
 /** @type {Record<Tool, string>} */
@@ -27,10 +29,8 @@ export function attachToolbar(hands) {
     for (const button of buttons) {
       const tool = toolOf(button);
       // Without a selected sphere there is nothing to follow, and no trail to see.
-      const idle = ONE.includes(tool) && hands.selected === null;
-      const on = String(!idle && hands.isOn(tool));
-      button.classList.toggle("idle", idle);
-      if (button.getAttribute("aria-pressed") !== on) button.setAttribute("aria-pressed", on);
+      button.classList.toggle("idle", ONE.includes(tool) && hands.selected === null);
+      press(button, hands.isOn(tool));
     }
   });
 }

@@ -9,15 +9,17 @@
  *   viewport: {x: number, y: number, width: number, height: number}}} Side
  * @typedef {"add" | "arrows" | "trail" | "follow"} Tool
  */
+import { annotate } from "./annotations.js";
+import { arrowTime } from "./arrows.js";
 import { Flash } from "./flash.js";
 import { attachPointers } from "./gestures.js";
 import { Handle, Label } from "./handle.js";
 import { placeOf } from "./interpolation.js";
-import { NewBall, arrowTime, reachOf } from "./newball.js";
-import { annotate } from "./annotations.js";
+import { NewBall, median } from "./newball.js";
 import { pick } from "./pick.js";
 import { say } from "./protocol.js";
 import { Trail } from "./trail.js";
+import { buildWalls, reachOf } from "./walls.js";
 
 const SLACK = 5; // pixels by which the mouse may miss a small sphere
 const TOUCH_SLACK = 18; // and a finger
@@ -43,7 +45,7 @@ export class Hands {
     /** @type {number | null} */ this.selected = null;
     this.side = 0; // on which it was selected
     /** @type {"turn" | "add"} */ this.mode = "turn";
-    this.trailing = true;
+    this.trailing = true; // a selected sphere draws its trail
     this.told = false; // how balls are added
     this.arrows = false; // of all spheres; drawn by whoever draws them
     /** @type {"dark" | "light"} */ this.theme = "dark";
@@ -72,26 +74,26 @@ export class Hands {
     calm();
   }
 
-  /** @param {Scene} scene */
-  setScene(scene) {
+  /** @param {Scene} scene @param {boolean} fresh whether it is another one, not the same with other spheres */
+  setScene(scene, fresh) {
     const before = this.scene;
     this.scene = scene;
     this.sides = [];
-    if (before === null || before.about.key !== scene.about.key) {
+    if (fresh) {
       this.select(null);
       this.flash.clear();
       this.leaveAdding();
-      this.next.resemble(scene);
-      this.reach = reachOf(scene.about);
-      this.time = this.handle.time = arrowTime(this.reach, scene.about);
-      this.handle.fullSpeed = scene.about.full_speed;
-    } else if (scene.n < before.n) this.select(null); // numbers mean other spheres now
+      this.#measure(scene);
+    } else if (before !== null && scene.n < before.n) this.select(null); // numbers mean other spheres now
     this.version++;
   }
 
-  /** One picture over the whole canvas. @param {Keyframe} first @param {Keyframe} second @param {number} t */
-  setPair(first, second, t) {
-    this.setSides([{ first, second, t, viewport: { x: 0, y: 0, ...this.camera.size } }]);
+  /** Scales that stay as long as the scene does, whatever is added or pushed. @param {Scene} scene */
+  #measure(scene) {
+    this.reach = reachOf(buildWalls(scene.about).bounds);
+    this.time = this.handle.time = arrowTime(median(scene.radius) || 0, this.reach, scene.about);
+    this.handle.fullSpeed = scene.about.full_speed;
+    this.next.resemble(scene, this.reach);
   }
 
   /** What is going to be drawn now; to be told before every picture. @param {Side[]} sides */
@@ -101,6 +103,7 @@ export class Hands {
     this.before = now;
     if (this.scene === null) return;
     this.sides = sides;
+    this.trails.splice(sides.length); // that of a side which has gone would go on elsewhere
     if (this.selected !== null) this.#attend(this.selected);
     if (sides.length > 0 && this.flash.update(sides[0], this.scene, now)) this.version++;
     for (const listener of this.listeners) listener(now);
@@ -128,7 +131,8 @@ export class Hands {
     const stands = alone && !side.second.playing && side.t === side.second.t;
     const free = this.scene !== null && Number.isFinite(this.scene.mass[i]);
     const sphere = stands && free && this.mode === "turn" ? this.stateOf(i, 0) : null;
-    const ball = sphere === null ? null : { ...sphere, viewport: side.viewport };
+    const radius = this.scene?.radius[i] ?? 0;
+    const ball = sphere === null ? null : { ...sphere, radius, viewport: side.viewport };
     const { wanted } = this.handle;
     if (this.handle.hold(ball, side?.second.epoch ?? -1)) this.version++;
     if (this.handle.drag !== null || this.handle.wanted !== wanted) this.version++;
@@ -179,25 +183,29 @@ export class Hands {
   isOn(tool) {
     if (tool === "add") return this.mode === "add";
     if (tool === "arrows") return this.arrows;
-    return tool === "trail" ? this.trailing : this.following;
+    return tool === "trail" ? this.trailing && this.selected !== null : this.following;
   }
 
   /** Switch a tool on or off. @param {Tool} tool */
   toggle(tool) {
     this.version++;
     if (tool === "arrows") this.arrows = !this.arrows;
-    else if (tool === "trail") {
+    else if (tool === "add") this.mode === "add" ? this.leaveAdding() : this.#startAdding();
+    else if (this.selected === null) {
+      const what = tool === "trail" ? "its trail comes with it" : "then follow it";
+      this.toast(`Select a sphere first, ${what}.`);
+    } else if (tool === "trail") {
       this.trailing = !this.trailing;
       this.trails = [];
-    } else if (tool === "add") {
-      if (this.mode === "add") return this.leaveAdding();
-      this.mode = "add";
-      this.canvas.dataset.mode = "add";
-      if (!this.told) this.toast("Press where the ball should be, drag to give it a velocity, let go.");
-      this.told = true;
     } else if (this.following) this.camera.follows = false;
-    else if (this.selected === null) this.toast("Select a sphere first: click it, or press J.");
     else this.#follow(this.selected);
+  }
+
+  #startAdding() {
+    this.mode = "add";
+    this.canvas.dataset.mode = "add";
+    if (!this.told) this.toast("Press where the ball should be, drag to give it a velocity, let go.");
+    this.told = true;
   }
 
   /** @param {number} i */

@@ -6,6 +6,7 @@
  * @typedef {import("./matrix.js").Vec3} Vec3
  */
 import { crossing, momentOf, placeOf } from "./interpolation.js";
+import { BREAK } from "./timeline.js";
 
 const LENGTH = 600; // points: ten seconds at sixty pictures a second
 
@@ -33,7 +34,10 @@ export class Trail {
    */
   extend(first, second, t, i, period) {
     const { before } = this;
-    const jump = before !== null && (before.second.epoch !== second.epoch || t < before.t);
+    // After a break nobody knows the way between.
+    const jump =
+      before !== null &&
+      (before.second.epoch !== second.epoch || t < before.t || first.clock - before.second.clock > BREAK);
     if (before !== null && !jump && t === before.t) {
       this.before = { first, second, t };
       return;

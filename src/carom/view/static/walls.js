@@ -53,6 +53,10 @@ export function buildWalls(about) {
   return { faces, edges, shells, bounds: boundsToFit(low, high, closed, shells, tubes) };
 }
 
+/** Radius around their middle of everything that is drawn. @param {Walls["bounds"]} bounds */
+export const reachOf = ({ center, points, margin }) =>
+  margin + Math.max(...points.map((point) => length(sub(point, center))), 1e-30);
+
 /** @param {number[]} normal the axis it lies along, or -1 */
 const axisOf = (normal) => normal.findIndex((part) => Math.abs(part) > 1 - 1e-9);
 
