@@ -163,7 +163,7 @@ def test_momentum_is_flat_and_the_rate_is_enskogs_in_a_fluid(plot):
     assert float(match[3]) == pytest.approx(500 * 1.765845 / 2, rel=0.005)
     assert rate == pytest.approx(float(match[3]), abs=6 * error + 0.01 * rate)
     line = like(drawn(shown, "Collision rate"), paint(shown, "--plot-1"))
-    assert line.any(axis=0).mean() > 0.6
+    assert line.any(axis=0).mean() > 0.45  # from the middle of the first window to that of the last
 
 
 def test_energies_are_the_engines(plot):
@@ -232,7 +232,8 @@ def test_pressure_on_each_wall_beside_theory(plot):
     says(shown, "Pressure on walls", r"15 % above theory\..*Averaged over a time of 24")
     bars = like(drawn(shown, "Pressure on walls"), paint(shown, "--plot-bars"), within=12)
     lengths = bars.sum(axis=1)
-    lengths = [lengths[2 + 20 * k + 10] for k in range(6)]
+    size = shown.js("parseFloat(getComputedStyle(document.documentElement).fontSize) / 13")
+    lengths = [lengths[int(size * (2 + 20 * k + 10))] for k in range(6)]
     assert lengths[1] / lengths[0] == pytest.approx(0.5, abs=0.03)
     assert np.ptp(np.delete(lengths, 1)) <= 8  # where the line of theory crosses
     theory = like(drawn(shown, "Pressure on walls"), paint(shown, "--plot-theory")).sum(axis=0)
