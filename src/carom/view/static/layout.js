@@ -6,6 +6,7 @@
  */
 import { halves } from "./split.js";
 
+const ROOMY = 600; // pixels in which two halves fit side by side on a narrow page
 const MARGIN = 8; // pixels between a picture and what covers it
 
 /**
@@ -22,8 +23,9 @@ const MARGIN = 8; // pixels between a picture and what covers it
 export function layout({ width, height, right, bottom, top, labels, narrow }) {
   if (labels > 0) {
     // Only the free area is split, so that both sides show the same.
+    const end = Math.max(top + 120, bottom - MARGIN);
     const viewports = narrow
-      ? halves(right, top, Math.max(top + 120, bottom - MARGIN), true)
+      ? halves(right, top, end, right < Math.max(ROOMY, end - top))
       : halves(right, 0, height, false);
     const insets = narrow
       ? { left: 0, right: 0, top: labels, bottom: 0 }

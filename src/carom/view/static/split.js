@@ -56,6 +56,7 @@ export class Comparison {
 
   /** @param {Viewport[]} viewports @param {number} top pixels of them that the heading takes */
   arrange(viewports, top) {
+    this.place.dataset.stacked = String(viewports[0].x === viewports[1].x);
     viewports.forEach(({ x, y, width, height }, k) => {
       const { style } = this.sides[k].place;
       const parts = { x, y, width, height, top };
