@@ -152,6 +152,9 @@ test("the layout leaves the panel and the bar free", () => {
   const phone = layout({ ...page, width: 390, height: 844, right: 390, bottom: 740, labels: 80, narrow: true });
   assert.ok(phone.viewports.every(({ y, height }) => y >= 60 && y + height <= 740));
   assert.deepEqual(phone.size, { width: 390, height: phone.viewports[0].height });
+  // Above an open sheet a tablet is wider than high.
+  const tablet = layout({ ...page, width: 820, height: 1180, right: 820, bottom: 510, labels: 80, narrow: true });
+  assert.deepEqual(tablet.viewports.map(({ x, y }) => [x, y]), [[0, 60], [410, 60]]);
 });
 
 test("the ticks are shown at the moment of the exact side", () => {
