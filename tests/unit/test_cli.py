@@ -224,14 +224,14 @@ class TestShow:
         monkeypatch.setattr("carom.cli.commands.serve", serve)
         status, out, err = cli("show --no-browser --port 1234")
         assert (status, err, calls.pop()[2:]) == (0, "", ("exact", 1234, False, "127.0.0.1"))
-        assert "carom shows phase-4 at http://h:1/#c" in out
+        assert "carom shows gas at http://h:1/#c" in out
         cli("show phase-3 --n 5 --method tick")
         assert calls.pop()[:5] == ("Phase 3: many balls", 5, "tick", 0, True)
         cli("show --n 5")
         assert calls.pop()[1] == 5
         assert cli("show --quiet")[1] == "http://h:1/#c\n"
         assert json.loads(cli("show --json")[1]) == {
-            "address": "http://h:1/#c", "scene": "phase-4", "n": 12
+            "address": "http://h:1/#c", "scene": "gas", "n": 500
         }  # fmt: skip
         status, out, err = cli("show --host 0.0.0.0 --json")
         assert json.loads(out)["watch_address"] == "http://h:1/#w"

@@ -25,7 +25,7 @@ from carom.state import State
 from carom.view import LiveView, serve
 
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
-DEFAULT_SCENE = "phase-4"
+DEFAULT_SCENE = "gas"
 #: Scene options are not known to Typer: they pass through and are read by `source`.
 LOOSE = {"allow_extra_args": True, "ignore_unknown_options": True}
 
