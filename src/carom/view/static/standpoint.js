@@ -5,7 +5,7 @@ const [AZIMUTH, HEIGHT] = [-0.42, 0.3]; // radians: two walls and the floor are 
 
 /**
  * @param {import("./camera.js").Camera} camera
- * @param {{bounds: any, faces: {fade: number, normal: import("./matrix.js").Vec3}[]}} walls
+ * @param {Pick<import("./walls.js").Walls, "bounds" | "faces">} walls
  * @param {import("./protocol.js").About} about
  */
 export function standBack(camera, { bounds, faces }, about) {
