@@ -5,6 +5,7 @@ to renew their pictures only; it needs the `dev` extra and Chromium.
 """
 
 import base64
+import json
 import shutil
 import sys
 import time
@@ -19,17 +20,21 @@ from carom.view import LiveView
 IMAGES = Path(__file__).parent / "images"
 GALLERY = Path(carom.__file__).parent / "view" / "static" / "gallery"
 SOFTWARE_GL = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-CLOSER = 0.95  #: than a fit, which leaves a margin for panels
 LARGEST = 25_000  #: bytes of a picture of the gallery
-#: Seconds until a scene looks most like itself.
-MOMENTS = {"bounce": 1.0, "break-shot": 2.5, "newton-cradle": 1.2, "two-balls": 2.0}
+#: Simulated time at which a scene looks most like itself.
+MOMENTS = {"bounce": 0.9, "break-shot": 1.35, "galperin": 2.6, "newton-cradle": 2.6, "two-balls": 3.0}
+#: Nearer than a fit, and what is in the middle then, where most of a scene is empty.
+NEARER = {"break-shot": (0.6, (1, 0, -1)), "two-balls": (0.75, (0.8, 0, -0.5))}
 
 #: Draws the scene alone, twice as large as needed, and makes it small: smooth edges.
 SMALL = """async () => {
   const { camera, canvas, renderer, actions } = carom;
   camera.resize(canvas.clientWidth, canvas.clientHeight, { left: 0, right: 0, top: 0, bottom: 0 });
   actions.fit();
-  camera.zoom(CLOSER);
+  if (NEARER) {
+    camera.zoom(NEARER[0]);
+    camera.target = NEARER[1];
+  }
   camera.finish();
   const wait = () => new Promise((done) => requestAnimationFrame(done));
   for (let k = 0; k < 3; k++) {
@@ -56,12 +61,14 @@ def shown(browser: Browser, view: LiveView, width: int, height: int) -> Page:
 
 def card(browser: Browser, name: str) -> None:
     """The picture of a scene in the gallery."""
-    with LiveView(carom.Simulation(scenes.build(name))) as view:
-        page = shown(browser, view, 640, 400)
-        time.sleep(MOMENTS.get(name, 3.0))
+    sim = carom.Simulation(scenes.build(name))
+    sim.run(until=MOMENTS.get(name, 3.0 * sim.scene.pace))
+    with LiveView(sim) as view:
+        page = shown(browser, view, 960, 600)
         page.evaluate("carom.timeline.newest.playing && carom.actions.toggle()")
-        for quality in (0.9, 0.8, 0.7, 0.5):
-            script = SMALL.replace("QUALITY", str(quality)).replace("CLOSER", str(CLOSER))
+        for quality in (0.97, 0.9, 0.8, 0.6):
+            near = json.dumps(NEARER.get(name))
+            script = SMALL.replace("QUALITY", str(quality)).replace("NEARER", near)
             data = base64.b64decode(page.evaluate(script))
             if len(data) <= LARGEST:
                 break
@@ -70,12 +77,24 @@ def card(browser: Browser, name: str) -> None:
     print(f"{name}: {len(data)} bytes")
 
 
+#: The most telling parts of the panel, and the spheres at their best.
+TELLING = """() => {
+  for (const name of ["section-scene", "section-settings"]) document.getElementById(name).open = false;
+  carom.renderer.governor.force(3);
+  carom.stale = true;
+}"""
+
+
 def readme(browser: Browser) -> None:
-    """Phase 4 after some seconds."""
-    with LiveView(carom.Simulation(scenes.phase_4())) as view:
-        page = shown(browser, view, 1280, 720)
-        time.sleep(8)
-        page.screenshot(path=IMAGES / "phase-4.png")
+    """A gas that has found Maxwell's speeds."""
+    sim = carom.Simulation(scenes.gas(n=400, packing_fraction=0.08))
+    sim.run(until=30.0)
+    with LiveView(sim) as view:
+        page = shown(browser, view, 1440, 900)
+        time.sleep(4)
+        page.evaluate(TELLING)
+        time.sleep(3)
+        page.screenshot(path=IMAGES / "live-view.png")
         page.close()
 
 

@@ -1,9 +1,11 @@
 """The page over time: nothing piles up, and it comes back after a loss."""
 
+import gc
 import socket
 import time
 from contextlib import ExitStack
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 
@@ -51,6 +53,35 @@ def test_nothing_piles_up(show):
     assert more_listeners <= listeners + 25
     assert more_nodes <= nodes + 60
     assert shown.js("carom.twin.keyframes.length") <= 12
+
+
+@pytest.mark.validate
+def test_ten_minutes_leave_no_trace(show):
+    """Memory of the page and of the program, minute by minute, while a class plays with it."""
+    shown = show(carom.Simulation(scenes.gas(n=200)))
+    cdp = shown.page.context.new_cdp_session(shown.page)
+    cdp.send("Performance.enable")
+    page_bytes, program_bytes, counts = [], [], []
+    end = time.perf_counter() + 600
+    k = 0
+    while time.perf_counter() < end:
+        minute = time.perf_counter() + 60
+        while time.perf_counter() < minute:
+            round_trip(shown, 2 * k)  # an even number: the same scene at every reading
+            time.sleep(3)
+            k += 1
+        counts.append(metrics(shown, cdp))
+        found = cdp.send("Performance.getMetrics")["metrics"]
+        page_bytes.append(next(m["value"] for m in found if m["name"] == "JSHeapUsedSize"))
+        gc.collect()
+        program_bytes.append(int(Path("/proc/self/statm").read_text().split()[1]) * 4096)
+    report = f"{k} rounds; page {page_bytes}; program {program_bytes}; {counts}"
+    print(report)  # noqa: T201
+    # The first minutes fill caches and histories, which have a largest size.
+    assert page_bytes[-1] < page_bytes[1] + 2e6, report
+    assert program_bytes[-1] < program_bytes[1] + 40e6, report
+    assert counts[-1][0] <= counts[1][0] + 25, report
+    assert counts[-1][1] <= counts[1][1] + 60, report
 
 
 def test_a_lost_graphics_context_is_replaced(show):

@@ -30,11 +30,14 @@ def test_a_card_loads_its_scene(show):
     dialog.wait_for(state="visible")
     shown.wait("document.querySelectorAll('#gallery .cards button').length > 0")
     assert dialog.locator(".cards button").count() == len(scenes.names())
+    assert dialog.locator(".cards h3 + button").get_attribute("data-name") == "phase-0"
     # Those that were looked at have come; the others wait until they are scrolled to.
     loaded = "[...document.querySelectorAll('#gallery img')].filter((i) => i.naturalWidth === 320)"
     shown.wait(f"{loaded}.length >= 8")
     card = dialog.locator("button[data-name=newton-cradle]")
-    assert scenes.describe("newton-cradle") in card.inner_text()
+    title, line = scenes.describe("newton-cradle").split(": ")
+    assert card.inner_text().split("\n")[0] == title
+    assert line.lower() in card.inner_text().lower()
     card.focus()
     page.keyboard.press("Enter")
     shown.wait("carom.scene.about.origin?.name === 'newton-cradle'")

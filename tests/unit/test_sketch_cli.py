@@ -1,6 +1,7 @@
 """`carom sketch`, as people type it."""
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -101,6 +102,15 @@ def test_wrong_options(capsys, write, words, sentence):
         main(["sketch", str(write(DRAW)), "--no-browser", *words])
     assert end.value.code == 2
     assert sentence in capsys.readouterr().err
+
+
+def test_quiet_prints_the_address_alone(write):
+    with carom_sketch(write(DRAW), "--no-browser", "--quiet") as process:
+        line = process.stdout.readline()
+        process.send_signal(signal.SIGINT)
+        rest, _ = process.communicate(timeout=10)
+    assert re.fullmatch(r"http://127\.0\.0\.1:\d+/#token=\S+\n", line)
+    assert rest == ""
 
 
 def test_help_lists_it(capsys):

@@ -258,3 +258,44 @@ def test_the_twin_follows_tick_by_tick():
         assert FRAME_HEADER.unpack_from(page.snapshots[-1].frames[1])[7 + METERS.index("missed")]
         page.order("compare", on=False)
         page.wait_for(lambda head: len(page.snapshots[-1].frames) == 1)
+
+
+def test_what_cures_a_collapse_lets_time_be_played_on():
+    sim = Stub(error=CollapseError("spheres 0 and 1 collapse"))
+    with Watcher(sim) as page:
+        page.wait_for(lambda head: head["flags"] == 2)
+        sim.error = None
+        page.order("gravity", value=(0.0, 0.0, 0.0))
+        page.wait_for(lambda head: head["flags"] == 0)
+        page.order("play")
+        page.wait_for(lambda head: head["flags"] == 1)
+
+
+@pytest.mark.parametrize("where", ["scenes.build", "Simulation.reset", "Simulation.run"])
+def test_too_little_memory_is_told_and_ends_nothing(monkeypatch, where):
+    sim = carom.Simulation(scenes.two_balls())
+    with Watcher(sim) as page:
+        page.wait_for(lambda head: head["t"] > 0)
+
+        def full(*_, **__):
+            raise MemoryError
+
+        monkeypatch.setattr(f"carom.{where}", full)
+        answers = page.order("scene", name="gas", options={})
+        failed = where == "Simulation.run"
+        page.wait_for(lambda head: page.note("failure") if failed else answers)
+        said = page.note("failure") if failed else json.loads(answers[0])["refused"]
+        assert said.startswith("There is not enough memory")
+        monkeypatch.undo()
+        page.order("restart")
+        page.wait_for(lambda head: head["flags"] == 1)
+        assert page.note("failure") == ""
+
+
+def test_an_empty_simulation_waits_for_its_first_ball():
+    with Watcher(carom.Simulation()) as page:
+        page.wait_for(lambda head: head["n"] == 0 and head["flags"] == 1)
+        ball = {"position": (0.0, 0.0, 0.0), "velocity": (1.0, 0.0, 0.0), "radius": 0.5}
+        page.order("add", **ball, mass=1.0, color=0)
+        page.wait_for(lambda head: head["t"] > 0)
+        assert page.note("failure") == ""

@@ -1,5 +1,7 @@
 """What pages can do to a simulation."""
 
+import threading
+
 import numpy as np
 import pytest
 
@@ -229,13 +231,29 @@ def test_history_keeps_the_first_and_the_newest_densest():
     history = History()
     for count in range(10 * MOST):
         history.keep(Mark(count, False, ()))
-    counts = [mark.count for mark in history._marks]
+    counts = [mark.count for _, mark in history._marks]
     assert len(counts) == MOST
     assert counts[0] == 0
     assert counts[-8:] == list(range(10 * MOST - 8, 10 * MOST))
     assert max(np.diff(counts)) < 3 * MOST
-    assert history.before(10 * MOST - 3).count == 10 * MOST - 4
-    assert history.before(0).count == 0
+    mark, further = history.before(10 * MOST - 3)
+    assert (mark.count, further) == (10 * MOST - 4, 1)
+    mark, further = history.before(0)
+    assert (mark.count, further) == (0, 0)
+
+
+def test_history_leads_to_the_end_of_a_stretch_before_a_change():
+    history = History()
+    history.keep(Mark(0, False, ()))
+    history.keep(Mark(40, False, ()))
+    history.turn(50)  # say one of two spheres was taken away: now hits of the wall are counted
+    history.keep(Mark(7, False, ()))
+    mark, further = history.before(9)
+    assert (mark.count, further) == (7, 2)
+    mark, further = history.before(7)
+    assert (mark.count, further) == (40, 10)
+    mark, further = history.before(49)
+    assert (mark.count, further) == (40, 9)
 
 
 def test_history_keeps_within_its_memory(monkeypatch):
@@ -247,5 +265,126 @@ def test_history_keeps_within_its_memory(monkeypatch):
     history = History()
     for count in range(20):
         history.keep(Mark(count, False, (Bookmark(),)))
-    assert [mark.count for mark in history._marks][::2] == [0, 19]
+    assert [mark.count for _, mark in history._marks][::2] == [0, 19]
     assert len(history._marks) == 3
+
+
+def test_back_does_not_replay_across_a_change():
+    """The mark before a change leads only as far as the change; time never goes forward."""
+    stage = opened(carom.Simulation(scenes.phase_3()))
+    play(stage, 60)
+    act(stage, "reverse")
+    play(stage, 30)
+    after = stage.sim.collisions
+    moments = []
+    for _ in range(3):
+        act(stage, "step")
+        moments.append(stage.sim.state)
+    assert stage.sim.collisions == after + 3
+    for moment in reversed(moments[:-1]):
+        act(stage, "back")
+        assert np.array_equal(stage.sim.position, moment.position)
+    while stage.reversed:
+        before = stage.sim.time
+        act(stage, "back")
+        assert stage.sim.time < before
+    plain = carom.Simulation(scenes.phase_3())
+    plain.run(collisions=stage.sim.collisions)
+    assert np.array_equal(stage.sim.position, plain.position)
+
+
+def test_back_where_one_of_two_balls_was_taken_away():
+    """Of one ball alone, hits of walls are counted; the two counts are not mixed up."""
+    sim = carom.Simulation(walls=carom.Box(4, 4, 4))
+    sim.add((-1, 0, 0), velocity=(1, 0, 0))
+    sim.add((1, 0, 0), velocity=(-1, 0.1, 0))
+    stage = opened(sim)
+    play(stage, 100)
+    act(stage, "remove", index=0)
+    play(stage, 20)
+    times = [stage.sim.time]
+    while times[-1] > 90:
+        act(stage, "back")
+        times.append(stage.sim.time)
+        assert times[-1] < times[-2]
+    assert len(stage.sim) == 2
+
+
+def test_back_in_ticks_leaves_the_tick_whatever_it_holds():
+    stage = opened(carom.Simulation(scenes.phase_4(n=40), method="tick"))
+    play(stage, 30.5, slices=37)
+    assert stage.sim.time == 30  # whole ticks only, however the time is cut
+    act(stage, "back")  # to the collisions of the last tick that had some
+    for _ in range(20):
+        before = stage.sim.time
+        act(stage, "back")
+        assert stage.sim.time < before
+    whole = carom.Simulation(scenes.phase_4(n=40), method="tick")
+    whole.run(until=stage.sim.time)
+    assert np.array_equal(whole.position, stage.sim.position)
+
+
+def test_ticks_beside_do_not_hold_up_a_step_that_finds_nothing(monkeypatch):
+    monkeypatch.setattr("carom.view.stage.SEARCH", 0.2)
+    sim = carom.Simulation(walls=carom.Box(10, 10, 10))
+    sim.add((0, 0, -3), velocity=(1, 0, 0))
+    sim.add((0, 0, 3), velocity=(1, 0, 0))
+    stage = opened(sim)
+    act(stage, "compare", on=True)
+    with pytest.raises(RunError, match="no collision came"):
+        act(stage, "step")
+    assert (stage.sim.time, stage.twin.time) == (0, 0)
+
+
+def test_in_ticks_other_ticks_are_refused():
+    stage = opened(carom.Simulation(scenes.phase_4(), method="tick"))
+    act(stage, "scene", name="phase-3", options={})
+    with pytest.raises(InputError, match=r"carom show bounce --method tick"):
+        act(stage, "scene", name="bounce", options={})
+    with pytest.raises(InputError, match="goes in ticks already"):
+        act(stage, "compare", on=True)
+
+
+def test_the_contact_time_of_a_bare_simulation_stays():
+    sim = carom.Simulation(rule=carom.Smooth(0.9, contact_time=0.125))
+    sim.add((0, 0, 0))
+    stage = opened(sim)
+    act(stage, "rule", restitution=1.0)
+    act(stage, "rule", restitution=0.5)
+    assert sim.rule == carom.Smooth(0.5, contact_time=0.125)
+
+
+def test_no_gas_law_where_collisions_take_energy():
+    stage = opened(carom.Simulation(scenes.gas(n=100)))
+    assert stage.pressure.theory(1.0) > 0
+    act(stage, "walls", restitution=0.5)
+    assert stage.pressure.theory(1.0) is None
+    act(stage, "walls", restitution=1.0)
+    act(stage, "rule", restitution=0.5)
+    assert stage.pressure.theory(1.0) is None
+
+
+def test_a_scene_that_takes_too_long_is_refused_and_nobody_waits(monkeypatch):
+    go = threading.Event()
+
+    def slow(name, options):
+        go.wait(10)
+        return scenes.gas(n=10)
+
+    monkeypatch.setattr("carom.view.builder.scenes.build", slow)
+    monkeypatch.setattr("carom.view.builder.PATIENCE", 0.1)
+    stopping = []
+    stage = Stage(carom.Simulation(scenes.phase_3()), stopping=lambda: bool(stopping))
+    with pytest.raises(InputError, match=r"gas takes longer than 0\.1 seconds to build"):
+        act(stage, "scene", name="gas", options={})
+    with pytest.raises(InputError, match="still being built"):
+        act(stage, "scene", name="gas", options={})
+    go.set()
+    stage._builder._thread.join()
+    assert len(stage.sim) == 12
+    go.clear()
+    stopping.append(True)
+    with pytest.raises(RunError, match="closing"):
+        act(stage, "scene", name="gas", options={})
+    go.set()
+    assert len(stage.sim) == 12

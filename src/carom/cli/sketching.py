@@ -30,6 +30,9 @@ def sketch(
         bool,
         typer.Option("--json", metavar="", help="Write the address as JSON; prints go to stderr."),
     ] = False,
+    quiet: Annotated[
+        bool, typer.Option("--quiet", metavar="", help="Print the address and nothing else.")
+    ] = False,
 ) -> None:
     """Run a program of your own with setup() and draw(), in the style of Processing."""
     number, chosen = whole("port", port), whole("seed", seed)
@@ -41,6 +44,9 @@ def sketch(
     def ready(address: str) -> None:
         if json:
             report.write_json({"address": address, "file": str(program.path)})
+            return
+        if quiet:
+            report.output().print(address, soft_wrap=True)
             return
         line = Text("carom runs ").append(program.path.name, style="bold").append(" at ")
         line.append(address, style="cyan underline").append("   (Ctrl-C ends it)")

@@ -35,7 +35,7 @@ def two_balls(
         velocity=[(1.5, 0, 0), (0, 0, 0)],
         radius=(0.5, 0.7),
         mass=(1, number("mass_ratio", mass_ratio, above=0)),
-        color=("red", "#4c9be8"),
+        color=("#e5533d", "#4c9be8"),
     )
     return Scene(
         spheres,

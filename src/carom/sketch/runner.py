@@ -46,7 +46,7 @@ class Runner:
         self._publish, self._hungry, self._watched = publish, hungry, watched
         self._wake = threading.Event()
         self._lock = threading.Lock()  # of the orders
-        self._orders: list[str] = []
+        self._orders: list[tuple[str, Callable[[str], None]]] = []
         self._playing, self._steps, self._due = True, 0, 0.0
         self._picture, self._epoch, self._changed = Picture(), 0, True
         self._frames: tuple[float, int] = (0.0, 0)
@@ -65,12 +65,12 @@ class Runner:
     # Called from other threads.
 
     def order(self, command: Command, reply: Callable[[str], None]) -> None:
-        """Take a command of a page."""
+        """Take a command of a page; `reply` is called once, with the answer or ""."""
         if command.op not in OPERATIONS:
             reply(encode_text("refused", "A sketch has no such control."))
             return
         with self._lock:
-            self._orders.append(command.op)
+            self._orders.append((command.op, reply))
         self._wake.set()
 
     def poke(self) -> None:
@@ -103,8 +103,9 @@ class Runner:
     def _obey(self) -> None:
         with self._lock:
             orders, self._orders = self._orders, []
-        for op in orders:
+        for op, reply in orders:
             self._changed = True
+            reply("")
             if op == "restart":
                 self._epoch += 1
                 self._playing, self._steps = True, 0

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Any
 
-from carom.errors import CaromError, CollapseError
+from carom.errors import CaromError, CollapseError, RunError
 from carom.view.announcer import Announcer
 from carom.view.protocol import Command, encode_text
 from carom.view.snapshot import Snapshot
@@ -19,8 +19,10 @@ PATIENCE = 0.04  #: seconds after which a run that takes longer than foreseen is
 IDLE = 0.25  #: seconds between looks around while nothing moves
 #: Of several in a row only the newest counts: sliders send many.
 SLIDERS = frozenset({"speed", "rule", "walls", "gravity", "scene"})
-#: What makes time run again after a failure.
-CURES = frozenset({"restart", "scene", "back", "compare"})
+#: What goes to another moment; all but a step back let time run again after a failure.
+JUMPS = frozenset({"restart", "scene", "back", "compare"})
+
+NO_MEMORY = RunError("there is not enough memory for this many spheres; take fewer")
 
 Reply = Callable[[str], None]
 
@@ -106,10 +108,10 @@ class Driver:
             self._thread.join()
 
     def order(self, command: Command, reply: Reply = lambda text: None) -> None:
-        """Ask for what a page can ask for; `reply` is told what could not be done."""
+        """Ask for what a page can ask for; `reply` is called once, with the answer or ""."""
         with self._lock:
             if self._orders and command.op in SLIDERS and self._orders[-1][0].op == command.op:
-                self._orders.pop()
+                self._orders.pop()[1]("")
             self._orders.append((command, reply))
         self._wake.set()
 
@@ -140,41 +142,63 @@ class Driver:
 
     def _rest(self, until: float, moving: bool) -> None:
         """Wait for the next step. Orders are obeyed at once, and end the wait unless moving."""
-        while not self._stopping and (left := until - time.perf_counter()) > 0:
+        while not self._stopping and not self._orders:
+            left = until - time.perf_counter()
+            if left <= 0:
+                return
             if self._wake.wait(left):
                 self._wake.clear()
-                if not moving or self._orders:
+                if not moving:
                     return
 
     def _obey(self) -> None:
-        with self._lock:
-            orders, self._orders = self._orders, deque()
-        for command, reply in orders:
-            try:
-                self._do(command, reply)
-            except CollapseError as error:
-                self._fail(error)
-            except CaromError as error:
-                reply(encode_text("refused", _sentence(error)))
+        """Do what was ordered; pages get a frame between if there is much."""
+        end = time.perf_counter() + PATIENCE
+        while not self._stopping and time.perf_counter() < end:
+            with self._lock:
+                if not self._orders:
+                    return
+                command, reply = self._orders.popleft()
+            reply(self._answer(command))
             self._changed = True
 
-    def _do(self, command: Command, reply: Reply) -> None:
+    def _answer(self, command: Command) -> str:
+        """Do what a page asks for; say why not, or what it has asked for, or nothing."""
+        try:
+            return self._do(command)
+        except CollapseError as error:
+            self._fail(error)
+        except CaromError as error:
+            return encode_text("refused", _sentence(error))
+        except MemoryError:
+            return encode_text("refused", _sentence(NO_MEMORY))
+        return ""
+
+    def _do(self, command: Command) -> str:
+        if command.op == "source":
+            return encode_text("source", self._announcer.source())
         if command.op == "speed":
             self._speed = command["value"]
         elif command.op in ("play", "pause"):
             self._playing = command.op == "play" and not self._failure
-        elif command.op == "source":
-            reply(encode_text("source", self._announcer.source()))
         else:
-            if command.op in ("step", "back"):
-                self._playing = False
+            self._act(command)
+        return ""
+
+    def _act(self, command: Command) -> None:
+        if command.op in ("step", "back"):
+            self._playing = False
+        failed, self._failure = self._failure, ""
+        try:
             self._stage.act(command)
-            if command.op in CURES:
-                if command.op == "restart" or self._failure:
-                    self._playing = command.op != "back"
-                self._failure = ""
-                self._reached = 0.0
-                self._run(0.0)
+        except BaseException:
+            self._failure = failed
+            raise
+        if command.op in JUMPS:
+            if command.op == "restart" or failed:
+                self._playing = command.op != "back"
+            self._reached = 0.0
+            self._run(0.0)
 
     def _step(self, seconds: float) -> None:
         """Run for as much simulated time as `seconds` of the clock stand for."""
@@ -205,6 +229,8 @@ class Driver:
             pass
         except CaromError as error:
             self._fail(error)
+        except MemoryError:
+            self._fail(NO_MEMORY)
 
     def _fail(self, error: CaromError) -> None:
         self._failure, self._playing = _sentence(error), False

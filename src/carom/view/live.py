@@ -78,7 +78,7 @@ class LiveView:
         self._driver = Driver(
             self._sim, self._server.publish, self._server.hungry, self._server.watched
         )
-        self._driver.on_end = self._ended.set
+        self._driver.on_end = self._over
         page = f"http://{self._names[0]}:{self._socket.getsockname()[1]}/#token="
         self.url, self.watch_url = page + token, page + watch
         self._server.start()
@@ -94,6 +94,11 @@ class LiveView:
         self._driver.stop()
         self._server.stop()
         self._socket.close()
+
+    def _over(self) -> None:
+        """The simulation's thread has ended: so do the pages, which would wait in vain."""
+        self._ended.set()
+        self._server.close()
 
     def wait(self) -> None:
         """Wait until Ctrl-C, or until the simulation's thread fails, whose error is raised."""

@@ -17,6 +17,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from carom.errors import InputError
+from carom.view.door import Door, Visitor
 from carom.view.files import StaticFile, security_headers
 from carom.view.protocol import Command, decode_command, encode_text
 from carom.view.snapshot import Snapshot
@@ -32,6 +33,8 @@ from carom.view.wire import (
 
 MAX_CLIENTS = 64
 MAX_ANSWERS = 64  #: that may wait for a page which does not read them
+MAX_ORDERS = 16  #: of one page that may wait; what it says besides stays on the line
+SOURCE_EVERY = 5.0  #: seconds between sources for pages that watch: writing one takes time
 HELLO_WITHIN = 5.0  #: seconds
 #: What a page without the right to control may do.
 HARMLESS = frozenset({"credit", "source"})
@@ -55,6 +58,7 @@ class Client:
         self.answers: list[str] = []
         self.busy = False  # a message is still on its way out
         self.ready = asyncio.Event()
+        self.room = asyncio.Semaphore(MAX_ORDERS)
 
     def answer(self, text: str) -> None:
         """Send a text, in the server's thread, when the page reads."""
@@ -79,7 +83,8 @@ class Server:
     files : mapping
         Each file by its address, see `carom.view.files`.
     order : callable
-        Takes each `Command` of a page, and a callable that answers that page with a text.
+        Takes each `Command` of a page, and a callable to be called once when it is done, with
+        the answer to that page or "".
     poke : callable
         Told when a page can take a frame.
     welcome : collection of str
@@ -99,10 +104,12 @@ class Server:
         self._socket, self._tokens, self._files = listening, tokens, files
         self._order, self._poke, self._welcome = order, poke, welcome
         port: int = listening.getsockname()[1]
-        self._hosts = {f"{name}:{port}" for name in hosts}
+        # Browsers leave out the port of http.
+        self._hosts = {f"{name}:{port}" if port != 80 else name for name in hosts}
         self._origins = {f"http://{host}" for host in self._hosts}
         self._headers = security_headers(self._hosts)
-        self._connected = 0
+        self._door = Door()
+        self._source_at = -SOURCE_EVERY
         # Replaced, never changed in place: the driver's thread reads it without a lock.
         self._clients: tuple[Client, ...] = ()
         self._latest: Snapshot | None = None
@@ -118,10 +125,15 @@ class Server:
         self._thread.start()
         self._listening.wait()
 
+    def close(self) -> None:
+        """Close every connection, soon."""
+        with suppress(RuntimeError):  # the loop has ended already
+            self._loop.call_soon_threadsafe(self._end.set)
+
     def stop(self) -> None:
         """Close every connection and end the thread."""
-        if self._thread.is_alive():
-            self._loop.call_soon_threadsafe(self._end.set)
+        self.close()
+        if self._thread.ident is not None:
             self._thread.join()
 
     def publish(self, snapshot: Snapshot) -> None:
@@ -143,6 +155,7 @@ class Server:
         try:
             self._loop.run_until_complete(self._serve())
         finally:
+            self._listening.set()  # or it has failed, and nobody need wait
             self._loop.close()
 
     async def _serve(self) -> None:
@@ -150,6 +163,7 @@ class Server:
             self._talk,
             sock=self._socket,
             process_request=self._answer,
+            create_connection=partial(Visitor, self._door),  # type: ignore[arg-type]
             compression=None,  # motion does not compress; deflate would cost more than it saves
             max_size=MAX_MESSAGE,
             server_header=None,
@@ -158,6 +172,8 @@ class Server:
         ):
             self._listening.set()
             await self._end.wait()
+            for client in self._clients:  # nothing is done any more that it could wait for
+                client.room.release()
 
     def _take(self, snapshot: Snapshot) -> None:
         self._latest = snapshot
@@ -199,22 +215,20 @@ class Server:
         return Response(status.value, status.phrase, headers, body)
 
     async def _talk(self, connection: ServerConnection) -> None:
-        if self._connected >= MAX_CLIENTS:
-            await connection.close(TOO_MANY, f"only {MAX_CLIENTS} pages can watch at once")
-            return
-        self._connected += 1
         try:
-            if role := await self._greet(connection):
-                client = Client(connection, controls=role == "control")
-                for text in (encode_text("role", role), *self._welcome):
-                    client.answer(text)
-                await self._attend(client)
+            if not (role := await self._greet(connection)):
+                return
+            if len(self._clients) >= MAX_CLIENTS:
+                await connection.close(TOO_MANY, f"only {MAX_CLIENTS} pages can watch at once")
+                return
+            client = Client(connection, controls=role == "control")
+            for text in (encode_text("role", role), *self._welcome):
+                client.answer(text)
+            await self._attend(client)
         except InputError as error:
             await connection.close(REFUSED, str(error)[:120])
         except ConnectionClosed:
             pass
-        finally:
-            self._connected -= 1
 
     async def _greet(self, connection: ServerConnection) -> str:
         """Wait for a token and return its role; nothing is said before it has come."""
@@ -233,6 +247,8 @@ class Server:
         elif hello["version"] != VERSION:
             await connection.close(REFUSED, "this page belongs to another version")
             return ""
+        else:
+            self._door.leave(connection)  # type: ignore[arg-type]
         return role
 
     async def _attend(self, client: Client) -> None:
@@ -241,12 +257,12 @@ class Server:
         sending = asyncio.create_task(self._send(client))
         try:
             async for message in client.connection:
-                self._obey(client, decode_command(message))
+                await self._obey(client, decode_command(message))
         finally:
             self._clients = tuple(other for other in self._clients if other is not client)
             sending.cancel()
 
-    def _obey(self, client: Client, command: Command) -> None:
+    async def _obey(self, client: Client, command: Command) -> None:
         if command.op == "hello":
             msg = "hello was said already"
             raise InputError(msg)
@@ -254,15 +270,32 @@ class Server:
             client.credits = min(client.credits + command["count"], MAX_CREDITS)
             client.ready.set()
             self._poke()
-        elif client.controls or command.op in HARMLESS:
-            self._order(command, partial(self._answer_from_afar, client))
-        else:
-            client.answer(encode_text("refused", "This page may only watch."))
+        elif why := self._refusal(client, command.op):
+            client.answer(encode_text("refused", why))
+        elif not self._end.is_set():
+            await client.room.acquire()
+            self._order(command, partial(self._done_from_afar, client))
 
-    def _answer_from_afar(self, client: Client, text: str) -> None:
-        """Answer a page from another thread."""
+    def _refusal(self, client: Client, op: str) -> str:
+        """Why a page may not do something; "" if it may."""
+        if client.controls:
+            return ""
+        if op not in HARMLESS:
+            return "This page may only watch."
+        if self._loop.time() - self._source_at < SOURCE_EVERY:
+            return "A page has asked for this just now; try again in a few seconds."
+        self._source_at = self._loop.time()
+        return ""
+
+    def _done_from_afar(self, client: Client, answer: str) -> None:
+        """Tell a page from another thread that something is done."""
         with suppress(RuntimeError):  # the loop has ended, and the page with it
-            self._loop.call_soon_threadsafe(client.answer, text)
+            self._loop.call_soon_threadsafe(self._done, client, answer)
+
+    def _done(self, client: Client, answer: str) -> None:
+        client.room.release()
+        if answer:
+            client.answer(answer)
 
     async def _send(self, client: Client) -> None:
         """Send answers, and the newest snapshot when the page has credit and has not seen it."""

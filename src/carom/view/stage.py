@@ -6,9 +6,12 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from carom import mechanics, scenes
-from carom.errors import InputError, RunError
+import numpy as np
+
+from carom import mechanics
+from carom.errors import CaromError, CollapseError, InputError, RunError
 from carom.state import CAME_TO_REST
+from carom.view.builder import Builder
 from carom.view.history import History, Mark
 from carom.view.pressure import WallPressure
 from carom.view.protocol import Command
@@ -25,6 +28,8 @@ Stopping = Callable[[], bool]
 
 class Stage:
     """What is on show. Every action either works or raises a `CaromError` and changes nothing.
+
+    But for `CollapseError`, which leaves a step where the spheres collapse.
 
     Parameters
     ----------
@@ -57,7 +62,10 @@ class Stage:
         self._stopping = stopping
         self._serial = 0
         self._twin_start = 0.0
-        self._at_collision = False
+        self._at_collision = 0  # how many collisions have led to this moment and none after it
+        self._owed = 0.0  # time for which no whole tick has passed yet
+        self._contact_time = sim.rule.contact_time
+        self._builder = Builder(stopping)
         self._history = History()
         self.pressure = self._gauge()
         self._actions: dict[str, Callable[..., None]] = {
@@ -105,23 +113,35 @@ class Stage:
     # Time goes on.
 
     def run(self, duration: float, look: Look) -> None:
-        """Let time run; the ticks follow as far as whole ticks go."""
+        """Let time run; ticks go on as far as whole ticks go."""
+        if len(self.sim) == 0:
+            return
         self._history.note(self._mark)
-        self._at_collision = self._at_collision and duration == 0
-        self._advance(look, duration=duration)
+        if duration > 0:
+            self._at_collision = 0
+        if self._in_ticks:
+            # Whole ticks only: a shorter one would be another method.
+            self._owed += duration
+            duration = math.floor(self._owed / self.sim.tick + 1e-9) * self.sim.tick
+            self._owed = max(0.0, self._owed - duration)
+        self._advance(look, self._unless_stopping, duration=duration)
 
-    def _advance(self, look: Look, **goal: float) -> None:
+    def _advance(self, look: Look, look_beside: Look, **goal: float) -> None:
         before = self.sim.time
         try:
             self.sim.run(**goal, progress=look)
         finally:
-            self.pressure.add(self.sim.events, self.sim.time - before)
+            if self.sim.time > before:
+                self.pressure.add(self.sim.events, self.sim.time - before)
             if self.twin is not None:
-                # Whole ticks only: a shorter one would be another method.
                 ticks = math.floor((self.sim.time - self._twin_start) / self.twin.tick + 1e-9)
                 end = self._twin_start + ticks * self.twin.tick
                 if end > self.twin.time:
-                    self.twin.run(until=end)
+                    self.twin.run(until=end, progress=look_beside)
+
+    @property
+    def _in_ticks(self) -> bool:
+        return bool(self.sim.method == "tick")
 
     @property
     def _count(self) -> int:
@@ -138,6 +158,11 @@ class Stage:
 
     def _mark(self) -> Mark:
         return Mark(self._count, self.reversed, tuple(sim.bookmark() for sim in self.shown))
+
+    def _return_to(self, mark: Mark) -> None:
+        for sim, bookmark in zip(self.shown, mark.marks, strict=True):
+            sim.return_to(bookmark)
+        self.reversed = mark.reversed
 
     def _unless_stopping(self, _: object) -> None:
         if self._stopping():
@@ -162,21 +187,36 @@ class Stage:
 
     def _step(self) -> None:
         """Run through the next collision."""
-        self._history.keep(self._mark())
+        mark = self._mark()
         end = time.perf_counter() + SEARCH
 
         def search(_: object) -> None:
             if self._stopping() or time.perf_counter() > end:
-                msg = (
-                    f"no collision came within {SEARCH:g} seconds of looking; "
-                    "let time run on, or restart"
-                )
+                msg = f"no collision came within {SEARCH:g} seconds of looking; let time run on"
                 raise RunError(msg)
 
-        self._advance(search, **{self._goal: 1})
+        try:
+            self._advance(search, search, **{self._goal: 1})
+        except CollapseError:
+            self._history.keep(mark)
+            raise
+        except CaromError:
+            self._return_to(mark)
+            self.pressure = self._gauge()
+            raise
+        self._history.keep(mark)
         self._serial += 1
         self.event = self._last_collision()
-        self._at_collision = True
+        self._arrive()
+
+    def _arrive(self) -> None:
+        """Take note that the last run has ended with a collision; a tick can hold several."""
+        events = self.sim.events
+        if self._in_ticks:
+            events = events[events["time"] == self.sim.time]
+            self._at_collision = int(np.count_nonzero((events["j"] >= 0) == self._collide))
+        else:
+            self._at_collision = 1
 
     def _last_collision(self) -> dict[str, Any] | None:
         """What the last run ended with; coming to rest and waking are no collisions."""
@@ -193,34 +233,39 @@ class Stage:
 
     def _back(self) -> None:
         """Return to the moment right after the collision before this one, or to the start."""
-        target = self._count - self._at_collision
-        mark = self._history.before(target)
-        if mark is None:
+        now = self.sim.time
+        found = self._history.before(self._count - self._at_collision)
+        if found is None:
             msg = "there is nothing to step back to yet; let time run first"
             raise RunError(msg)
-        for sim, bookmark in zip(self.shown, mark.marks, strict=True):
-            sim.return_to(bookmark)
-        self.reversed = mark.reversed
-        self._at_collision = self._count < target
-        if self._at_collision:
-            self._advance(self._unless_stopping, **{self._goal: target - self._count})
+        mark, collisions = found
+        self._return_to(mark)
+        self._at_collision = 0
+        if collisions > 0:
+            look = self._unless_stopping
+            self._advance(look, look, **{self._goal: collisions})
+            self._arrive()
+        if self.sim.time > now:  # an engine of one's own need not repeat itself
+            self._return_to(mark)
+            self._at_collision = 0
         self._jump()
 
     def _reverse(self) -> None:
         for sim in self.shown:
             sim.velocity = -sim.velocity
         self.reversed = not self.reversed
+        self._change()
         self._jump()
 
     def _rule(self, restitution: float) -> None:
         """Change the restitution, with the cure of inelastic collapse where there is none."""
-        scene = self.sim.scene
-        contact = scene.rule.contact_time if scene is not None else None
+        contact = self._contact_time
         if contact is None and restitution < 1:
             short = 1e-3 * mechanics.crossing_time(self.sim.state, self.sim.world)
             contact = float(f"{short:.0e}") if 0 < short < math.inf else None
         for sim in self.shown:
             sim.rule = replace(sim.rule, restitution=restitution, contact_time=contact)
+        self._change()
 
     def _walls(self, restitution: float) -> None:
         for sim in self.shown:
@@ -228,11 +273,12 @@ class Stage:
                 replace(wall, restitution=restitution) if hasattr(wall, "restitution") else wall
                 for wall in sim.walls
             ]
+        self._change()
 
     def _gravity(self, value: tuple[float, float, float]) -> None:
         for sim in self.shown:
             sim.gravity = value
-        self.pressure = self._gauge()
+        self._change()
 
     def _load(self, name: str, options: dict[str, Any]) -> None:
         """Show another scene of the library."""
@@ -243,16 +289,19 @@ class Stage:
                 f"'carom show {name} --n {n:g}'"
             )
             raise InputError(msg)
-        try:
-            scene = scenes.build(name, options)
-        except MemoryError as error:
-            msg = "there is not enough memory for this many spheres; take fewer"
-            raise InputError(msg) from error
+        scene = self._builder.build(name, options)
+        if self._in_ticks and scene.pace != self.sim.pace:
+            msg = (
+                f"{name} needs ticks of another length than {self.sim.tick:g}; start "
+                f"'carom show {name} --method tick'"
+            )
+            raise InputError(msg)
         same = scene.origin is not None and self._origin == scene.origin.name
         self.sim.reset(scene)
         self.twin = None
         self.reversed = False
         self.key += not same
+        self._contact_time = scene.rule.contact_time
         self._jump(forget=True)
 
     @property
@@ -262,7 +311,9 @@ class Stage:
 
     def _add(self, **ball: Any) -> None:
         self._refuse_beside_ticks()
+        count = self._count
         self.sim.add(**ball)
+        self._change(count)
         self._jump()
 
     def _remove(self, index: int) -> None:
@@ -271,13 +322,16 @@ class Stage:
         if len(self.sim) == 1:
             msg = "this is the last sphere and the scene needs one; add another first"
             raise InputError(msg)
+        count = self._count
         self.sim.remove(index)
+        self._change(count)
         self._jump()
 
     def _push(self, index: int, velocity: tuple[float, float, float]) -> None:
         self._refuse_unknown(index)
         for sim in self.shown:
             sim[index].velocity = velocity
+        self._change()
         self._jump()
 
     def _refuse_beside_ticks(self) -> None:
@@ -298,6 +352,9 @@ class Stage:
                 f"can be watched with up to {MOST_COMPARED}: take fewer"
             )
             raise InputError(msg)
+        if on and self._in_ticks:
+            msg = "it goes in ticks already; start it with the exact method to compare"
+            raise InputError(msg)
         if on == (self.twin is not None):
             return
         self.twin = None
@@ -310,11 +367,17 @@ class Stage:
     def _gauge(self) -> WallPressure:
         return WallPressure(self.sim.world, self.sim.state, STRETCH * self.sim.pace)
 
+    def _change(self, count: int | None = None) -> None:
+        """Take note that the motion goes another way from now on, after so many collisions."""
+        self._history.turn(self._count if count is None else count)
+        self.pressure = self._gauge()
+
     def _jump(self, *, forget: bool = False) -> None:
         """Take note that the motion does not go on from where it was."""
         self.epoch += 1
         self.event = None
-        self._at_collision = self._at_collision and not forget
+        self._owed = 0.0
         if forget:
+            self._at_collision = 0
             self._history.clear()
         self.pressure = self._gauge()

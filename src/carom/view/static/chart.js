@@ -82,16 +82,18 @@ export function span(columns, { zero = false, least = 0 } = {}) {
   return { low: middle - grown / 2, high: middle + grown / 2 };
 }
 
+const SMALL = 13; // css pixels of the page's text at which a chart is drawn in its natural size
 const FONT = "11px system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', 'Noto Sans', sans-serif";
 const TOP = 20; // css pixels above the plot, for the label of the y axis
 const BOTTOM = 33; // below, for the numbers and the label of the x axis
 const RIGHT = 10;
 const FINEST = 3; // pixels of the screen per css pixel
 
-/** A canvas with css pixels as its unit, cleared, and the page's colours. @param {HTMLCanvasElement} canvas */
+/** A canvas cleared, with css pixels as its unit, or more where the page's text is large, and the page's colours. @param {HTMLCanvasElement} canvas */
 function begin(canvas) {
-  const { clientWidth: width, clientHeight: height } = canvas;
-  const ratio = Math.min(devicePixelRatio, FINEST);
+  const zoom = Math.max(1, parseFloat(getComputedStyle(document.documentElement).fontSize) / SMALL);
+  const [width, height] = [canvas.clientWidth / zoom, canvas.clientHeight / zoom];
+  const ratio = Math.min(devicePixelRatio, FINEST) * zoom;
   const size = [Math.round(width * ratio), Math.round(height * ratio)];
   if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
   const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));

@@ -2,6 +2,8 @@
 import { Dialog } from "./dialog.js";
 import { element } from "./dom.js";
 
+const PHASE = /^phase-\d$/; // scenes that follow the paper
+
 export class Gallery {
   /** @param {(name: string) => void} load */
   constructor(load) {
@@ -26,7 +28,7 @@ export class Gallery {
       this.stale = false;
       this.pictures ??= pictureNames();
       const pictures = await this.pictures;
-      this.grid.replaceChildren(...this.entries.map((entry) => this.#card(entry, pictures)));
+      this.grid.replaceChildren(...this.#cards(pictures));
     }
     for (const card of this.grid.querySelectorAll("button")) {
       const here = card.dataset.name === current;
@@ -34,6 +36,14 @@ export class Gallery {
       else card.removeAttribute("aria-current");
       if (here) card.focus();
     }
+  }
+
+  /** @param {Set<string>} pictures */
+  #cards(pictures) {
+    const cards = this.entries.map((entry) => this.#card(entry, pictures));
+    const first = cards.findIndex(({ dataset }) => PHASE.test(dataset.name ?? ""));
+    const heading = element("h3", {}, "The five phases, as in the paper");
+    return first < 0 ? cards : [...cards.slice(0, first), heading, ...cards.slice(first)];
   }
 
   /** @param {import("./protocol.js").Entry} entry @param {Set<string>} pictures */

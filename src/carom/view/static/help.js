@@ -9,7 +9,7 @@ const POINTING = [
   ["Move", "shift-drag", "two fingers"],
   ["Zoom", "wheel", "pinch"],
   ["Select a sphere", "click", "tap"],
-  ["Show all", "double click", "double tap"],
+  ["Show everything", "double click", "double tap"],
 ];
 
 export class Help {

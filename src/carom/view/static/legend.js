@@ -33,7 +33,7 @@ export function drawLegend(place, mode, full, scene) {
 function parts(mode, full, scene) {
   if (mode === "energy") {
     const rows = someColors(scene).map((own) => bar([saturated(own, 0), saturated(own, 1)]));
-    const note = "Pale: slow. Strong: full of energy.";
+    const note = "Pale: little energy. Strong: much.";
     return [...rows, scale(`${short(full)} +`, "kinetic energy"), element("p", { class: "note" }, note)];
   }
   if (mode === "speed") return [bar(SCALES.speed), scale(`${short(full)} +`, "speed")];

@@ -37,7 +37,9 @@ import { Hands } from "./tools.js";
 
 const SLOWLY = 250; // milliseconds between looks at what changes slowly
 const LABELS = 80; // pixels that the numbers above the halves of the split screen take
-const NARROW = matchMedia("(max-width: 720px)");
+// As in narrow.css: a sheet instead of a panel, and a screen too low for an open panel at first.
+const NARROW = matchMedia("(max-width: 500px), (max-width: 960px) and (min-height: 501px)");
+const LOW = matchMedia("(max-height: 500px)");
 
 class Page {
   constructor() {
@@ -98,10 +100,10 @@ class Page {
     keepSections(at("panel"));
     const arrange = () => {
       at(NARROW.matches ? "panel-top" : "actions").prepend(at("extras"));
-      this.controls.openPanel(!NARROW.matches);
+      this.controls.openPanel(!NARROW.matches && !LOW.matches);
     };
     arrange();
-    NARROW.addEventListener("change", arrange);
+    for (const query of [NARROW, LOW]) query.addEventListener("change", arrange);
     new ResizeObserver(() => this.#resize()).observe(this.canvas);
     watchFullScreen(at("fullscreen"));
     this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());

@@ -38,5 +38,9 @@ export function scientific(value) {
   return `${mantissa} × 10${superscript(Number(power))}`;
 }
 
+/** A share of something: in percent, or as a power of ten where it is tiny. @param {number} value */
+export const part = (value) =>
+  Math.abs(value) < 1e-3 ? scientific(value) : `${short(100 * Math.abs(value), 2)} %`;
+
 /** A multiple of the normal speed: 0.05×, 1×, 12×. @param {number} speed */
 export const multiple = (speed) => `${short(speed, 2)}×`;

@@ -1,6 +1,6 @@
 /** The numbers on the page. */
 import { at, put as write } from "./dom.js";
-import { count, multiple, scientific, short } from "./numbers.js";
+import { count, multiple, part, short } from "./numbers.js";
 
 const EVERY = 100; // milliseconds between changes, which nobody could read faster
 const SETTLED = 1500; // milliseconds until the speed reached is known
@@ -46,7 +46,7 @@ export class Readout {
     this.#row("potential", falls, short(frame.potential, 4));
     this.#row("dissipated", Math.abs(frame.dissipated) > 1e-300, short(frame.dissipated, 4));
     this.#row("temperature", Number.isFinite(frame.temperature), short(frame.temperature, 4));
-    this.#drift(frame.drift);
+    this.#drift(frame.drift, Math.abs(frame.dissipated) > 1e-300);
     const lags = frame.playing && frame.reached < 0.9 * frame.speed && now - this.steady > SETTLED;
     put("lag", lags ? `running at ${multiple(frame.reached)}` : "");
   }
@@ -64,10 +64,11 @@ export class Readout {
     put(id, text);
   }
 
-  /** One part in 10¹⁶ is an empty bar, everything a full one. @param {number} drift */
-  #drift(drift) {
+  /** One part in 10¹⁶ is an empty bar, everything a full one. @param {number} drift @param {boolean} lossy */
+  #drift(drift, lossy) {
     const size = Math.abs(drift);
-    put("drift", size === 0 ? "energy has not changed" : `energy has changed by ${scientific(drift)}`);
+    const what = lossy ? "Energy with losses has" : "Energy has";
+    put("drift", size === 0 ? `${what} not changed` : `${what} changed by ${part(drift)}`);
     const share = size > 0 ? Math.min(1, Math.max(0, (Math.log10(size) + 16) / 16)) : 0;
     const gauge = at("drift-gauge");
     gauge.style.setProperty("--share", String(Math.max(share, 0.02)));

@@ -12,6 +12,8 @@ import { toast } from "./toast.js";
  * @property {string} token
  */
 
+const MOST_ROWS = 12; // of a text; longer ones scroll
+
 export class Share {
   /** @param {Needs} needs */
   constructor(needs) {
@@ -48,8 +50,8 @@ export class Share {
   setSource({ python, toml, command }) {
     this.command.text.value = command;
     this.command.place.hidden = command === "";
-    this.python.text.value = python;
-    this.toml.text.value = toml;
+    this.python.fill(python);
+    this.toml.fill(toml);
   }
 
   async #draw() {
@@ -84,9 +86,14 @@ function field(name, note) {
 
 /** A text that unfolds. @param {string} name @param {string} kind */
 function area(name, kind) {
-  const text = element("textarea", { readonly: "", rows: "12", spellcheck: "false", wrap: "off", "aria-label": kind });
+  const text = element("textarea", { readonly: "", spellcheck: "false", wrap: "off", "aria-label": kind });
   const place = element("details", { class: "area" }, element("summary", {}, name), text, copyButton(kind, text));
-  return { place, text };
+  /** @param {string} lines */
+  const fill = (lines) => {
+    text.value = lines;
+    text.rows = Math.min(MOST_ROWS, lines.trimEnd().split("\n").length);
+  };
+  return { place, text, fill };
 }
 
 /** @param {string} name @param {HTMLInputElement | HTMLTextAreaElement} source */

@@ -4,7 +4,7 @@
  * @typedef {{x: number, y: number, width: number, height: number}} Viewport
  */
 import { at, element, put } from "./dom.js";
-import { count, scientific, short } from "./numbers.js";
+import { count, part, short } from "./numbers.js";
 
 const EVERY = 150; // milliseconds between changes
 const ROUNDING = 1e-9; // of a length: less is no overlap
@@ -43,7 +43,7 @@ export function around(keyframes, t) {
 export class Comparison {
   constructor() {
     this.place = at("comparison");
-    this.sides = [side("exact"), side("ticks")];
+    this.sides = [side("Exact"), side("Ticks")];
     this.place.append(...this.sides.map((each) => each.place));
     this.shown = -Infinity;
   }
@@ -67,13 +67,13 @@ export class Comparison {
   update(newest, tick, now) {
     if (now - this.shown < EVERY) return;
     this.shown = now;
-    put(this.sides[1].name, tick === null ? "ticks" : `ticks of ${short(tick)}`);
+    put(this.sides[1].name, tick === null ? "Ticks" : `Ticks of ${short(tick)}`);
     newest.forEach((frame, k) => {
       if (frame === undefined) return;
       const { rows } = this.sides[k];
       put(rows.collisions, count(frame.collisions));
       put(rows.missed, count(frame.missed));
-      put(rows.drift, frame.drift === 0 ? "0" : scientific(frame.drift));
+      put(rows.drift, frame.drift === 0 ? "0" : part(frame.drift));
       put(rows.overlap, frame.overlap < ROUNDING ? "none" : short(frame.overlap));
       rows.drift.dataset.verdict = verdict(Math.abs(frame.drift));
       rows.missed.dataset.verdict = frame.missed > 0 ? "poor" : "exact";

@@ -1,4 +1,4 @@
-/** The buttons of the hands' tools: every `[data-tool]` of the page, and the switch of arrows. */
+/** The buttons of the hands' tools: every `[data-tool]` of the page. */
 
 import { press } from "./dom.js";
 
@@ -12,6 +12,9 @@ const NAMES = {
   follow: "Follow the selected sphere (O)",
 };
 
+/** What concerns the selected sphere alone. @type {Tool[]} */
+const ONE = ["trail", "follow"];
+
 /** @param {import("./tools.js").Hands} hands */
 export function attachToolbar(hands) {
   /** @type {NodeListOf<HTMLButtonElement>} */
@@ -22,10 +25,12 @@ export function attachToolbar(hands) {
     button.title = NAMES[toolOf(button)];
     button.addEventListener("click", () => hands.toggle(toolOf(button)));
   }
-  const arrows = document.getElementById("show-arrows");
-  arrows?.addEventListener("change", () => hands.toggle("arrows"));
   hands.listeners.push(() => {
-    for (const button of buttons) press(button, hands.isOn(toolOf(button)));
-    if (arrows instanceof HTMLInputElement) arrows.checked = hands.isOn("arrows");
+    for (const button of buttons) {
+      const tool = toolOf(button);
+      // Without a selected sphere there is nothing to follow, and no trail to see.
+      button.classList.toggle("idle", ONE.includes(tool) && hands.selected === null);
+      press(button, hands.isOn(tool));
+    }
   });
 }

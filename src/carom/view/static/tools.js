@@ -204,7 +204,7 @@ export class Hands {
   #startAdding() {
     this.mode = "add";
     this.canvas.dataset.mode = "add";
-    if (!this.told) this.toast("Press where the ball shall be, drag its velocity, let go. The same button ends adding.");
+    if (!this.told) this.toast("Press where the ball should be, drag to give it a velocity, let go.");
     this.told = true;
   }
 
