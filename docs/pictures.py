@@ -22,7 +22,13 @@ GALLERY = Path(carom.__file__).parent / "view" / "static" / "gallery"
 SOFTWARE_GL = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 LARGEST = 25_000  #: bytes of a picture of the gallery
 #: Simulated time at which a scene looks most like itself.
-MOMENTS = {"bounce": 0.9, "break-shot": 1.35, "galperin": 2.6, "newton-cradle": 2.6, "two-balls": 3.0}
+MOMENTS = {
+    "bounce": 0.9,
+    "break-shot": 1.35,
+    "galperin": 2.6,
+    "newton-cradle": 2.6,
+    "two-balls": 3.0,
+}
 #: Nearer than a fit, and what is in the middle then, where most of a scene is empty.
 NEARER = {"break-shot": (0.6, (1, 0, -1)), "two-balls": (0.75, (0.8, 0, -0.5))}
 
