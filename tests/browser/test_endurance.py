@@ -4,6 +4,7 @@ import gc
 import socket
 import time
 from contextlib import ExitStack
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -209,7 +210,7 @@ def test_it_wakes_up_in_the_present(show):
     assert times["awake"] > times["asleep"]  # a sleeping page does not stop the simulation
     shown.wait(f"carom.timeline.t > {times['awake']}", 5)
     moments = shown.js("carom.moments")
-    steps = [b - a for a, b in zip(moments, moments[1:], strict=False)]
+    steps = [b - a for a, b in pairwise(moments)]
     assert min(steps) >= 0
     # One jump, not a film of what was missed; then it flows again as before.
     missed = max(steps)
@@ -218,7 +219,7 @@ def test_it_wakes_up_in_the_present(show):
     start = len(moments)
     shown.wait(f"carom.moments.length > {start + 15}")
     later = shown.js(f"carom.moments.slice({start})")
-    assert max(b - a for a, b in zip(later, later[1:], strict=False)) < 0.3 * missed
+    assert max(b - a for a, b in pairwise(later)) < 0.3 * missed
     assert later[-1] <= shown.sim.time
     assert shown.js("carom.timeline.newest.t - carom.timeline.t") < 1
     assert shown.page.locator("#connection").is_hidden()
@@ -252,3 +253,58 @@ def test_it_wakes_up_to_another_program(chromium):
         moment = shown.js("carom.drawn.t")
         shown.wait(f"carom.drawn.t > {moment}")
     page.close()
+
+
+def alone():
+    sim = carom.Simulation()
+    sim.add((0, 0, 0), velocity=(1, 0, 0), radius=1)
+    return sim
+
+
+def at_rest():
+    places = [(0, 0, 0), (3, 0, 0)]
+    return carom.Simulation(carom.Scene(carom.Spheres.of(places, radius=1), walls=()))
+
+
+def fixed():
+    spheres = carom.Spheres.of([(0, 0, 0), (3, 0, 0)], radius=1, fixed=True)
+    return carom.Simulation(carom.Scene(spheres, walls=(carom.Periodic(9, 9, 9),)))
+
+
+@pytest.mark.parametrize(
+    "world", [lambda: carom.Simulation(walls=carom.Box(4, 4, 4)), alone, at_rest, fixed]
+)
+def test_odd_worlds_are_shown(show, world):
+    """None, one, at rest, all fixed: nothing is divided by zero, and every tool is harmless."""
+    shown = show(world())
+    shown.wait("carom.drawn.t >= 0")
+    shown.js("document.querySelectorAll('#panel details').forEach((part) => (part.open = true))")
+    keys = ("j", "d", "t", "o", "c", "c", "c", "w", "w", "n", "b", "v", "v", "f", "a")
+    for key in (*keys, "Escape", "Space", "r", "x"):
+        shown.page.keyboard.press(key)
+    shown.wait("carom.settings.comparing")
+    time.sleep(1.5)
+    numbers = (
+        "[...carom.camera.view, ...carom.camera.projection, carom.hands.time, carom.look.full]"
+    )
+    assert shown.js(f"{numbers}.every(Number.isFinite)")
+    text = shown.page.locator("#panel").inner_text()
+    assert "NaN" not in text
+    assert "Infinity" not in text
+    assert "undefined" not in text
+    assert shown.js("carom.banners.failures.page") == ""
+    shown.page.keyboard.press("x")
+    shown.wait("!carom.settings.comparing")
+    for n in range(shown.js("carom.scene.n") - 1, -1, -1):
+        shown.js("carom.hands.select(0)")
+        shown.page.keyboard.press("Delete")
+        if n > 0:
+            shown.wait(f"carom.scene.n === {n}")
+        else:
+            shown.page.locator(".toast").filter(has_text="the last sphere").wait_for()
+    n = shown.js("carom.scene.n")
+    shown.js("carom.camera.look([-30, 5, 9], [1, 1.2, -1.5])")  # there is room
+    shown.js("carom.hands.next.radius = 0.2")
+    shown.page.keyboard.press("a")
+    shown.page.locator("#view").press("Enter")
+    shown.wait(f"carom.scene.n === {n + 1} && carom.drawn.t >= 0")

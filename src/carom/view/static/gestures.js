@@ -31,91 +31,11 @@ const LOOSE = 30; // pixels two fingers must move together before they let go of
  * @param {Tool} tool
  */
 export function attachPointers(canvas, camera, tool) {
-  /** @type {Map<number, Place>} */
-  const down = new Map();
-  /** @type {Drag | null} */ let drag = null;
-  /** Where the only pointer went down, as long as it may still be a tap. @type {Place | null} */
-  let start = null;
-  let last = { x: 0, y: 0, time: -Infinity }; // tap
-  let loose = 0; // pixels that two fingers have moved together
-
-  const place = (/** @type {MouseEvent} */ event) => {
-    const { left, top } = canvas.getBoundingClientRect();
-    return { x: event.clientX - left, y: event.clientY - top };
-  };
-  const spread = () => {
-    const [a, b] = [...down.values()];
-    return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, d: Math.hypot(a.x - b.x, a.y - b.y) };
-  };
-
-  canvas.addEventListener("pointerdown", (event) => {
-    const here = place(event);
-    canvas.setPointerCapture(event.pointerId);
-    down.set(event.pointerId, here);
-    if (down.size > 1) {
-      // A second finger: it is the camera that is meant.
-      drag?.cancel();
-      drag = start = null;
-      loose = 0;
-      return;
-    }
-    const main = event.button === 0 && !event.shiftKey;
-    drag = main ? tool.grab(here.x, here.y) : null;
-    start = main && drag === null ? here : null;
-  });
-
-  canvas.addEventListener("pointermove", (event) => {
-    const here = place(event);
-    const before = down.get(event.pointerId);
-    if (before === undefined) {
-      if (event.pointerType !== "touch" && down.size === 0) tool.hover(here.x, here.y);
-      return;
-    }
-    if (drag !== null) return drag.move(here.x, here.y);
-    if (start !== null) {
-      if (Math.hypot(here.x - start.x, here.y - start.y) < STILL) return;
-      start = null;
-    }
-    if (down.size >= 2) return pinch(event.pointerId, here);
-    down.set(event.pointerId, here);
-    const [x, y] = [here.x - before.x, here.y - before.y];
-    if (event.buttons & 6 || event.shiftKey) camera.pan(x, y);
-    else camera.turn(x * TURN, y * TURN);
-  });
-
-  /** @param {number} pointer @param {Place} here */
-  function pinch(pointer, here) {
-    const before = spread();
-    down.set(pointer, here);
-    const after = spread();
-    const [x, y] = [after.x - before.x, after.y - before.y];
-    loose += Math.hypot(x, y);
-    if (!camera.follows || loose > LOOSE) camera.pan(x, y);
-    if (before.d > 0 && after.d > 0) camera.zoom(before.d / after.d);
-  }
-
-  canvas.addEventListener("pointerup", (event) => {
-    if (!down.delete(event.pointerId)) return;
-    const here = place(event);
-    drag?.end();
-    if (start !== null) tap(here, event.pointerType === "touch");
-    drag = start = null;
-  });
-  canvas.addEventListener("pointercancel", (event) => {
-    if (!down.delete(event.pointerId)) return;
-    drag?.cancel();
-    drag = start = null;
-  });
-
-  /** @param {Place} here @param {boolean} touch */
-  function tap({ x, y }, touch) {
-    const time = performance.now();
-    const twice = time - last.time < SOON && Math.hypot(x - last.x, y - last.y) < NEAR;
-    last = { x, y, time: twice ? -Infinity : time };
-    if (twice) tool.twice(x, y);
-    else tool.tap(x, y, touch);
-  }
-
+  const pointers = new Pointers(canvas, camera, tool);
+  canvas.addEventListener("pointerdown", (event) => pointers.press(event));
+  canvas.addEventListener("pointermove", (event) => pointers.move(event));
+  canvas.addEventListener("pointerup", (event) => pointers.lift(event, false));
+  canvas.addEventListener("pointercancel", (event) => pointers.lift(event, true));
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
   canvas.addEventListener(
     "wheel",
@@ -127,6 +47,102 @@ export function attachPointers(canvas, camera, tool) {
     },
     { passive: false },
   );
+}
+
+class Pointers {
+  /** @param {HTMLCanvasElement} canvas @param {import("./camera.js").Camera} camera @param {Tool} tool */
+  constructor(canvas, camera, tool) {
+    this.canvas = canvas;
+    this.camera = camera;
+    this.tool = tool;
+    /** Those that are down. @type {Map<number, Place>} */ this.down = new Map();
+    /** @type {Drag | null} */ this.drag = null;
+    /** Where the only pointer went down, as long as it may still be a tap. @type {Place | null} */
+    this.start = null;
+    this.last = { x: 0, y: 0, time: -Infinity }; // tap
+    this.loose = 0; // pixels that two fingers have moved together
+  }
+
+  /** @param {MouseEvent} event @returns {Place} */
+  #place(event) {
+    const { left, top } = this.canvas.getBoundingClientRect();
+    return { x: event.clientX - left, y: event.clientY - top };
+  }
+
+  /** @param {PointerEvent} event */
+  press(event) {
+    const here = this.#place(event);
+    this.canvas.setPointerCapture(event.pointerId);
+    this.down.set(event.pointerId, here);
+    if (this.down.size > 1) {
+      // A second finger: it is the camera that is meant.
+      this.drag?.cancel();
+      this.drag = this.start = null;
+      this.loose = 0;
+      return;
+    }
+    const main = event.button === 0 && !event.shiftKey;
+    this.drag = main ? this.tool.grab(here.x, here.y) : null;
+    this.start = main && this.drag === null ? here : null;
+  }
+
+  /** @param {PointerEvent} event */
+  move(event) {
+    const { camera, down, start } = this;
+    const here = this.#place(event);
+    const before = down.get(event.pointerId);
+    if (before === undefined) {
+      if (event.pointerType !== "touch" && down.size === 0) this.tool.hover(here.x, here.y);
+      return;
+    }
+    if (this.drag !== null) return this.drag.move(here.x, here.y);
+    if (start !== null && Math.hypot(here.x - start.x, here.y - start.y) < STILL) return;
+    this.start = null;
+    if (down.size >= 2) return this.#pinch(event.pointerId, here);
+    down.set(event.pointerId, here);
+    const [x, y] = [here.x - before.x, here.y - before.y];
+    if (event.buttons & 6 || event.shiftKey) camera.pan(x, y);
+    else camera.turn(x * TURN, y * TURN);
+  }
+
+  /** @param {number} pointer @param {Place} here */
+  #pinch(pointer, here) {
+    const { camera } = this;
+    const before = this.#spread();
+    this.down.set(pointer, here);
+    const after = this.#spread();
+    const [x, y] = [after.x - before.x, after.y - before.y];
+    this.loose += Math.hypot(x, y);
+    if (!camera.follows || this.loose > LOOSE) camera.pan(x, y);
+    if (before.d > 0 && after.d > 0) camera.zoom(before.d / after.d);
+  }
+
+  /** The middle of two fingers and their distance. */
+  #spread() {
+    const [a, b] = [...this.down.values()];
+    return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, d: Math.hypot(a.x - b.x, a.y - b.y) };
+  }
+
+  /** @param {PointerEvent} event @param {boolean} lost the browser took the pointer away */
+  lift(event, lost) {
+    if (!this.down.delete(event.pointerId)) return;
+    if (lost) this.drag?.cancel();
+    else {
+      this.drag?.end();
+      if (this.start !== null) this.#tap(this.#place(event), event.pointerType === "touch");
+    }
+    this.drag = this.start = null;
+  }
+
+  /** @param {Place} here @param {boolean} touch */
+  #tap({ x, y }, touch) {
+    const { last } = this;
+    const time = performance.now();
+    const twice = time - last.time < SOON && Math.hypot(x - last.x, y - last.y) < NEAR;
+    this.last = { x, y, time: twice ? -Infinity : time };
+    if (twice) this.tool.twice(x, y);
+    else this.tool.tap(x, y, touch);
+  }
 }
 
 /**

@@ -11,7 +11,7 @@
  * @typedef {object} Moment one sphere in one keyframe
  * @property {Vec3} x
  * @property {Vec3} v
- * @property {number} count its count byte
+ * @property {number} count impulses so far in 31 bits; the top bit: no gravity
  */
 import { add, dot, scale, sub } from "./matrix.js";
 import { STILL } from "./wire.js";

@@ -71,16 +71,13 @@ class Page {
     this.inspector = new Inspector(at("inspector"), this.hands);
     this.gallery = new Gallery((name) => send(say.scene(name, {})));
     this.help = new Help();
-    const [picture, askSource] = [() => this.#photo(), () => send(say.source())];
-    this.share = new Share({ token, picture, askSource });
+    this.share = new Share({ token, picture: () => this.#photo(), askSource: () => send(say.source()) });
     this.parameters = new Parameters((name, options) => send(say.scene(name, options)));
     this.laws = new SettingsPanel(send, this.camera);
     this.comparison = new Comparison();
     this.actions = this.#actions(send, fit);
-    this.controls = new Controls(this.actions, {
-      speed: (value) => send(say.speed(value)),
-      layout: () => this.#resize(),
-    });
+    const speed = (/** @type {number} */ value) => send(say.speed(value));
+    this.controls = new Controls(this.actions, { speed, layout: () => this.#resize() });
     this.#watch();
     this.connection = this.#connect(token);
     requestAnimationFrame((now) => this.#tick(now));

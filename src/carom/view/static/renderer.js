@@ -222,15 +222,12 @@ export class Renderer {
     const { first, second, t, viewport } = sides[side];
     const scene = /** @type {Scene} */ (this.scene);
     const { about } = scene;
-    const theme = THEMES[options.theme];
     const pair = this.pairs[side];
     pair.set(first, second, scene);
-    const { axes, eye, view } = camera;
+    const { axes, eye } = camera;
     const { right, up, back } = axes;
     const room = this.walls.faces.length > 0;
     const lamp = room ? lampFrom(camera.up, ...fixedAxes(camera)) : lampFrom(camera.up, right, back);
-    const port = [viewport.x, 0, viewport.width, viewport.height].map((v) => Math.round(v * ratio));
-    port[1] = this.canvas.height - Math.round((viewport.y + viewport.height) * ratio);
     return {
       side,
       camera,
@@ -240,24 +237,11 @@ export class Renderer {
       eyeToWorld: new Float32Array([...right, 0, ...up, 0, ...back, 0, ...eye, 1]),
       options,
       about,
-      theme,
+      theme: THEMES[options.theme],
       level,
       ratio,
       pair,
-      common: {
-        uView: view,
-        uProjection: camera.projection,
-        uPort: port,
-        uLine: 1.25 * ratio,
-        uLamp: direction(view, lamp),
-        uUp: direction(view, camera.up),
-        uKey: theme.key,
-        uSky: theme.sky,
-        uGround: theme.ground,
-        uTint: theme.tint,
-        uFog: theme.back,
-        uFogRange: [camera.distance - 0.4 * camera.reach, 1 / (2.6 * camera.reach), theme.fog],
-      },
+      common: this.#common(camera, viewport, ratio, lamp, THEMES[options.theme]),
       motion: {
         uS: Math.min(Math.max(t - first.t, 0), second.t - first.t),
         uH: second.t - first.t,
@@ -267,6 +251,31 @@ export class Renderer {
       },
       shadow: NO_SHADOWS,
       crowded: this.crowds[side].cover,
+    };
+  }
+
+  /**
+   * @param {Camera} camera @param {Viewport} viewport @param {number} ratio @param {Vec3} lamp
+   * @param {Look["theme"]} theme
+   * @returns {Common}
+   */
+  #common(camera, viewport, ratio, lamp, theme) {
+    const { view } = camera;
+    const port = [viewport.x, 0, viewport.width, viewport.height].map((v) => Math.round(v * ratio));
+    port[1] = this.canvas.height - Math.round((viewport.y + viewport.height) * ratio);
+    return {
+      uView: view,
+      uProjection: camera.projection,
+      uPort: port,
+      uLine: 1.25 * ratio,
+      uLamp: direction(view, lamp),
+      uUp: direction(view, camera.up),
+      uKey: theme.key,
+      uSky: theme.sky,
+      uGround: theme.ground,
+      uTint: theme.tint,
+      uFog: theme.back,
+      uFogRange: [camera.distance - 0.4 * camera.reach, 1 / (2.6 * camera.reach), theme.fog],
     };
   }
 }
@@ -280,5 +289,5 @@ function fixedAxes(camera) {
   return [turned(cos, sin), turned(sin, -cos)];
 }
 
-/** No walls yet. @type {any} */
+/** No walls yet. */
 const EMPTY = { period: [0, 0, 0], walls: [], low: [-1, -1, -1], high: [1, 1, 1] };

@@ -219,10 +219,33 @@ export class Spheres {
   /** @param {Look} look */
   draw(look) {
     const { gl } = this;
-    const { pair, options, level, about } = look;
+    const { pair, options } = look;
     const size = this.#largest(look);
     const points = size < this.largestPoint && (this.software || pair.traits.n >= POINTS_FROM);
-    const far = points && size < FAR * look.ratio;
+    const program = this.#begin(look, points, points && size < FAR * look.ratio);
+    const { images } = pair;
+    const draw = () => {
+      pair.bind(points ? "points" : "quads");
+      gl.vertexAttribI4ui(IMAGE, 0, 0, 0, 0);
+      this.#pass(points, pair.traits.n);
+      if (images.count === 0) return;
+      images.bind(points ? 0 : 1);
+      this.#pass(points, images.count);
+    };
+    gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE);
+    if (options.wire) draw();
+    else this.#solid(look, program, draw);
+    gl.enable(gl.BLEND);
+    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    gl.depthMask(false);
+  }
+
+  /**
+   * The program for this picture, with its uniforms.
+   * @param {Look} look @param {boolean} points @param {boolean} far small ones
+   */
+  #begin(look, points, far) {
+    const { options, level, about } = look;
     // Spheres that may overlap need the depth of every pixel; so do things stuck into large ones.
     const flat = about.collide && (far || level.samples === 0);
     const program = this.programs.get(options.wire ? "wire" : far ? "far" : "solid", {
@@ -239,42 +262,31 @@ export class Spheres {
     program.set(look.shadow);
     program.set(this.#colors(look));
     program.set({ uCover: ANY });
-    const { images } = pair;
-    const draw = () => {
-      pair.bind(points ? "points" : "quads");
-      gl.vertexAttribI4ui(IMAGE, 0, 0, 0, 0);
-      this.#pass(points, pair.traits.n);
-      if (images.count === 0) return;
-      images.bind(points ? 0 : 1);
-      this.#pass(points, images.count);
-    };
-    gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE);
-    if (options.wire) draw();
-    else if (level.samples > 0) {
+    return program;
+  }
+
+  /** @param {Look} look @param {import("./program.js").Program} program @param {() => void} draw */
+  #solid({ level, pair }, program, draw) {
+    const { gl } = this;
+    gl.depthMask(true);
+    gl.disable(gl.BLEND);
+    if (level.samples > 0) {
       // Smooth edges by coverage need no sorting, and work among spheres in one another.
-      gl.depthMask(true);
-      gl.disable(gl.BLEND);
       gl.enable(gl.SAMPLE_ALPHA_TO_COVERAGE);
       draw();
       gl.disable(gl.SAMPLE_ALPHA_TO_COVERAGE);
-    } else {
-      gl.depthMask(true);
-      gl.disable(gl.BLEND);
-      const edges = level.edges || pair.traits.n <= FEW;
-      program.set({ uCover: edges ? WHOLE : HALF });
-      draw();
-      gl.depthMask(false);
-      gl.enable(gl.BLEND);
-      if (edges) {
-        gl.depthFunc(gl.LESS); // a sphere's own whole pixels are left out early
-        program.set({ uCover: EDGES });
-        draw();
-        gl.depthFunc(gl.LEQUAL);
-      }
+      return;
     }
-    gl.enable(gl.BLEND);
-    gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    const edges = level.edges || pair.traits.n <= FEW;
+    program.set({ uCover: edges ? WHOLE : HALF });
+    draw();
+    if (!edges) return;
     gl.depthMask(false);
+    gl.enable(gl.BLEND);
+    gl.depthFunc(gl.LESS); // a sphere's own whole pixels are left out early
+    program.set({ uCover: EDGES });
+    draw();
+    gl.depthFunc(gl.LEQUAL);
   }
 
   /** @param {boolean} points @param {number} n */

@@ -17,7 +17,7 @@ function slenderness(points, compass) {
 
 /**
  * @param {import("./camera.js").Camera} camera
- * @param {{bounds: any, faces: {fade: number, normal: import("./matrix.js").Vec3}[]}} walls
+ * @param {Pick<import("./walls.js").Walls, "bounds" | "faces">} walls
  * @param {import("./protocol.js").About} about
  */
 export function standBack(camera, { bounds, faces }, about) {

@@ -1,7 +1,7 @@
 /**
  * What is drawn of the walls, and what the camera must fit.
  * @typedef {import("./matrix.js").Vec3} Vec3
- * @typedef {import("./protocol.js").About} About
+ * @typedef {Pick<import("./protocol.js").About, "walls" | "period" | "low" | "high">} About
  *
  * @typedef {object} Face a flat wall
  * @property {Vec3} center
