@@ -16,7 +16,7 @@ from carom.view import LiveView, door
 from carom.view.server import MAX_ANSWERS, MAX_CLIENTS, MAX_ORDERS, Server
 from carom.view.wire import OPERATIONS, VERSION
 
-from .pages import address, closed, dead_page, hear, page, request, say, speechless
+from .pages import address, closed, hear, page, request, say, speechless
 
 
 @pytest.fixture
@@ -178,25 +178,6 @@ def test_too_many_pages(view):
     with page(view) as ws:
         say(ws, op="credit", count=1)
         assert hear(ws)
-
-
-def test_dead_pages_slow_nobody():
-    sim = carom.Simulation(scenes.fluid(n=10_000))
-    with LiveView(sim) as view, ExitStack() as dead:
-        view._socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 16384)
-        for _ in range(3):
-            dead.enter_context(dead_page(view))
-        with page(view) as ws:
-            say(ws, op="credit", count=1)
-            hear(ws)
-            assert sum(client.busy for client in view._server._clients) >= 3
-            before, clock = sim.time, time.perf_counter()
-            for _ in range(30):
-                say(ws, op="credit", count=1)
-                hear(ws)
-            rate = (sim.time - before) / (time.perf_counter() - clock)
-            assert sum(client.busy for client in view._server._clients) >= 3
-    assert rate > 0.7 * sim.pace
 
 
 # From any program in the network: sockets that hold on.

@@ -19,7 +19,7 @@ from carom.view import LiveView, network, serve
 from carom.view.files import SKETCH, VIEW, load
 from carom.view.protocol import Command
 
-from .pages import address, hear, page, request, say
+from .pages import address, closed, hear, page, request, say
 
 
 @pytest.fixture
@@ -157,10 +157,15 @@ def test_ports_that_do_not_exist(sim, port):
         serve(sim, port=port, open_browser=False)
 
 
-@pytest.mark.parametrize("host", ["", "example.org", "256.0.0.1", "::1", "0.0.0.0.0"])
+@pytest.mark.parametrize("host", ["", "example.org", "256.0.0.1", "::1", "0.0.0.0.0", "224.0.0.1"])
 def test_hosts_that_are_no_addresses_are_refused(sim, host):
     with pytest.raises(InputError, match=r"give an address of this machine such as \d"):
         serve(sim, host=host, open_browser=False)
+
+
+def test_who_listens_to_himself_is_not_warned_of_others(sim):
+    assert not LiveView(sim, host="127.0.0.2").is_public
+    assert LiveView(sim, host="192.0.2.7").is_public
 
 
 def test_addresses_of_other_machines_are_refused(sim):
@@ -239,3 +244,45 @@ def test_a_bug_in_the_engine_is_raised(monkeypatch, sim):
     monkeypatch.setattr(sim, "run", broken)
     with pytest.raises(ZeroDivisionError):
         serve(sim, open_browser=False)
+
+
+def test_a_bug_in_the_engine_ends_the_pages(monkeypatch, sim):
+    """They say so and call again, though nobody waits for the view in this program."""
+    with LiveView(sim) as view, page(view) as ws:
+        hear(ws, "role")
+
+        def broken(**_):
+            raise ZeroDivisionError
+
+        monkeypatch.setattr(sim, "run", broken)
+        assert closed(ws)[0] == 1001
+        with pytest.raises(ZeroDivisionError):
+            view.wait()
+
+
+@pytest.mark.parametrize("order", ["", "scene", "step"])
+def test_ctrl_c_ends_it_whatever_it_is_about(order):
+    """While it starts, while a scene is built that takes minutes, while a step is searched."""
+    program = (
+        "import carom, time; from carom.view import serve\n"
+        "from carom.view.protocol import Command as C; from carom.view.builder import scenes\n"
+        "scenes.build = lambda *_: [time.sleep(0.01) for _ in range(6000)]\n"
+        "sim = carom.Simulation(walls=carom.Box(9, 9, 9))\n"
+        "sim.add((0, 0, -3), velocity=(1, 0, 0)); sim.add((0, 0, 3), velocity=(1, 0, 0))\n"
+        "def ready(view):\n"
+        f"    view._driver.order(C({order!r} or 'pause', "
+        f"{dict(name='gas', options={}) if order == 'scene' else {}!r}))\n"
+        "    time.sleep(0.2); print('ready', flush=True)\n"
+        "serve(sim, open_browser=False, on_ready=ready)\n"
+        "sim.run(duration=1); print(len(sim), 'ended')"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", program],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    ) as process:
+        assert process.stdout.readline() == "ready\n"
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=10)
+    assert (out, err, process.returncode) == ("2 ended\n", "", 0)

@@ -1,6 +1,7 @@
 """What pages can do to a simulation."""
 
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -364,12 +365,10 @@ def test_no_gas_law_where_collisions_take_energy():
     assert stage.pressure.theory(1.0) is None
 
 
-def test_a_scene_that_takes_too_long_is_refused_and_nobody_waits(monkeypatch):
-    go = threading.Event()
-
+def test_a_scene_that_takes_too_long_is_given_up(monkeypatch):
     def slow(name, options):
-        go.wait(10)
-        return scenes.gas(n=10)
+        while True:
+            time.sleep(0.01)
 
     monkeypatch.setattr("carom.view.builder.scenes.build", slow)
     monkeypatch.setattr("carom.view.builder.PATIENCE", 0.1)
@@ -377,14 +376,23 @@ def test_a_scene_that_takes_too_long_is_refused_and_nobody_waits(monkeypatch):
     stage = Stage(carom.Simulation(scenes.phase_3()), stopping=lambda: bool(stopping))
     with pytest.raises(InputError, match=r"gas takes longer than 0\.1 seconds to build"):
         act(stage, "scene", name="gas", options={})
-    with pytest.raises(InputError, match="still being built"):
-        act(stage, "scene", name="gas", options={})
-    go.set()
-    stage._builder._thread.join()
-    assert len(stage.sim) == 12
-    go.clear()
+    assert not stage._builder._thread.is_alive()
     stopping.append(True)
     with pytest.raises(RunError, match="closing"):
         act(stage, "scene", name="gas", options={})
+    assert not stage._builder._thread.is_alive()
+    assert len(stage.sim) == 12
+
+
+def test_while_a_scene_cannot_be_given_up_no_other_is_built(monkeypatch):
+    go = threading.Event()
+    monkeypatch.setattr("carom.view.builder.scenes.build", lambda *_: go.wait(10))
+    monkeypatch.setattr("carom.view.builder.PATIENCE", 0.1)
+    stage = opened(carom.Simulation(scenes.phase_3()))
+    with pytest.raises(InputError, match="takes longer"):
+        act(stage, "scene", name="gas", options={})
+    with pytest.raises(InputError, match="still being built"):
+        act(stage, "scene", name="gas", options={})
     go.set()
+    stage._builder._thread.join(5)
     assert len(stage.sim) == 12

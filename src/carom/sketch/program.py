@@ -187,7 +187,7 @@ class Program:
             return f"{where}: {error}"
         if isinstance(error, RecursionError):
             return f"{where}: a function calls itself without end; give it a way out"
-        said = " ".join(f"{type(error).__name__}: {error}".split())
+        said = " ".join(f"{type(error).__name__}: {error}".split()).removesuffix(":")
         if isinstance(error, NameError) and error.name:
             said += _meant(error.name, [*self.names, *vars(builtins)])
         elif isinstance(error, AttributeError) and error.name:

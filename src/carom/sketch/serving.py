@@ -5,7 +5,7 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Self
 
-from carom.errors import CaromError, InputError
+from carom.errors import CaromError
 from carom.sketch.program import Program
 from carom.sketch.runner import Runner
 from carom.view import network, tokens
@@ -49,10 +49,8 @@ class SketchView:
         port: int = 0,
         on_error: Callable[[CaromError], None] = lambda error: None,
     ) -> None:
-        if isinstance(port, bool) or not isinstance(port, int) or not 0 <= port <= 65535:
-            msg = f"port is {port!r}; it must be a whole number from 0 (any free one) to 65535"
-            raise InputError(msg)
-        self._program, self._port, self._on_error = program, port, on_error
+        self._program, self._on_error = program, on_error
+        self._port = network.checked_port(port)
 
     def __enter__(self) -> Self:
         self._socket = network.listen(HOST, self._port)

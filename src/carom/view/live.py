@@ -6,7 +6,6 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Self
 
-from carom.errors import InputError
 from carom.view import network, tokens
 from carom.view.catalogue import catalogue
 from carom.view.driver import Driver
@@ -51,17 +50,14 @@ class LiveView:
     watch_url: str
 
     def __init__(self, sim: Viewable, *, host: str = "127.0.0.1", port: int = 0) -> None:
-        if isinstance(port, bool) or not isinstance(port, int) or not 0 <= port <= 65535:
-            msg = f"port is {port!r}; it must be a whole number from 0 (any free one) to 65535"
-            raise InputError(msg)
         self._names = network.reached_as(host)
-        self._sim, self._host, self._port = sim, host, port
+        self._sim, self._host, self._port = sim, host, network.checked_port(port)
         self._ended = threading.Event()
 
     @property
     def is_public(self) -> bool:
         """Whether other machines can reach it."""
-        return self._host not in network.LOOPBACK
+        return not network.is_loopback(self._host)
 
     def __enter__(self) -> Self:
         self._socket = network.listen(self._host, self._port)

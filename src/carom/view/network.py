@@ -10,6 +10,25 @@ LOOPBACK = ("127.0.0.1", "localhost")
 EVERYWHERE = "0.0.0.0"
 
 
+def checked_port(port: object) -> int:
+    """`port`, if it is one.
+
+    Raises
+    ------
+    InputError
+        If not.
+    """
+    if isinstance(port, bool) or not isinstance(port, int) or not 0 <= port <= 65535:
+        msg = f"port is {port!r}; it must be a whole number from 0 (any free one) to 65535"
+        raise InputError(msg)
+    return port
+
+
+def is_loopback(host: str) -> bool:
+    """Whether only this machine reaches a view that listens at `host`."""
+    return host in LOOPBACK or ipaddress.IPv4Address(host).is_loopback
+
+
 def listen(host: str, port: int) -> socket.socket:
     """Open a listening socket.
 
@@ -39,18 +58,21 @@ def reached_as(host: str) -> tuple[str, ...]:
     Raises
     ------
     InputError
-        If `host` is no IPv4 address.
+        If `host` is no IPv4 address of a machine.
     """
     if host in LOOPBACK:
         return (host, *(name for name in LOOPBACK if name != host))
     try:
-        ipaddress.IPv4Address(host)
-    except ValueError as error:
+        address = ipaddress.IPv4Address(host)
+    except ValueError:
+        address = None
+    # Nobody can open the address of a group of machines, though one may listen at it.
+    if address is None or address.is_multicast or address.is_reserved:
         msg = (
             f"host is {host!r}; give an address of this machine such as {own_addresses()[0]}, "
             f"{EVERYWHERE} for all of them, or 127.0.0.1 for this machine alone"
         )
-        raise InputError(msg) from error
+        raise InputError(msg)
     if host == EVERYWHERE:
         return (*own_addresses(), *LOOPBACK)
     return (host,)
