@@ -15,6 +15,8 @@ from carom.state import EVENT, State
 from carom.world import World
 
 NO_LIMIT = 2**62
+#: Arrays of a state that no engine changes: all states of one share them, read-only.
+UNCHANGING = ("mass", "radius", "species", "color", "fixed")
 
 # CAROM_CHECK=1 lets the core compare its structures with one another after every slice.
 _CHECK = os.environ.get("CAROM_CHECK") == "1"
@@ -115,6 +117,8 @@ class FastEngine:
         slice_seconds: float = 0.05,
     ) -> None:
         self._start = state.copy()
+        for name in UNCHANGING:
+            getattr(self._start, name).flags.writeable = False
         self._lock = threading.Lock()  # the core runs without the GIL
         walls = np.column_stack(
             [
@@ -204,18 +208,12 @@ class FastEngine:
         return events
 
     def state(self) -> State:
-        """A copy of the state at `time`."""
+        """A copy of the state at `time`; what never changes in it is read-only."""
         with self._lock:
             position, velocity, image, count, resting = self._core.state()
             time, collisions, wall_collisions = self.time, self.collisions, self.wall_collisions
-        start = self._start
         return replace(
-            start,
-            mass=start.mass.copy(),
-            radius=start.radius.copy(),
-            species=start.species.copy(),
-            color=start.color.copy(),
-            fixed=start.fixed.copy(),
+            self._start,
             position=position,
             velocity=velocity,
             image=image,

@@ -81,6 +81,7 @@ class Driver:
     ) -> None:
         self._sim, self._publish, self._hungry, self._watched = sim, publish, hungry, watched
         self._wake = threading.Event()
+        self._resting = True
         self._stopping = False
         self._lock = threading.Lock()
         self._orders: deque[tuple[Command, Reply]] = deque()
@@ -117,7 +118,8 @@ class Driver:
 
     def poke(self) -> None:
         """A page can take a frame now: look whether there is one for it."""
-        self._wake.set()
+        if self._resting:  # while time runs, it looks soon enough
+            self._wake.set()
 
     def _main(self) -> None:
         try:
@@ -133,6 +135,7 @@ class Driver:
             self._obey()
             now = time.perf_counter()
             moving = self._playing and self._watched()
+            self._resting = not moving
             if moving:
                 self._step(now - last)
             last = now

@@ -268,7 +268,8 @@ class Server:
             raise InputError(msg)
         if command.op == "credit":
             client.credits = min(client.credits + command["count"], MAX_CREDITS)
-            client.ready.set()
+            if self._latest is not None and self._latest.number != client.number:
+                client.ready.set()
             self._poke()
         elif why := self._refusal(client, command.op):
             client.answer(encode_text("refused", why))
@@ -311,7 +312,8 @@ class Server:
                 client.busy = True
                 await self._deliver(client, latest)
                 client.busy = False
-                client.ready.set()  # a newer one may have come meanwhile
+                if self._latest is not latest:  # a newer one has come meanwhile
+                    client.ready.set()
         except ConnectionClosed:
             return
 
