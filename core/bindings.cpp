@@ -30,12 +30,18 @@ using WallRows = nb::ndarray<const double, nb::shape<-1, 7>, nb::c_contig, nb::d
 Vec3 three(const Three& a) { return {a(0), a(1), a(2)}; }
 Vec3 row(const Vectors& a, size_t i) { return {a(i, 0), a(i, 1), a(i, 2)}; }
 
-// Hands a vector over to NumPy without a copy.
+// Room for numbers that will all be written: clearing it first would cost as much again.
+template <class T>
+std::unique_ptr<T[]> room_for(size_t count) {
+    return std::make_unique_for_overwrite<T[]>(count);
+}
+
+// Hands numbers over to NumPy without a copy.
 template <class T, class... Shape>
-auto array_of(std::vector<T>&& data, Shape... shape) {
-    auto* held = new std::vector<T>(std::move(data));
-    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<std::vector<T>*>(p); });
-    return nb::ndarray<nb::numpy, T>(held->data(), {size_t(shape)...}, owner);
+auto array_of(std::unique_ptr<T[]>&& data, Shape... shape) {
+    T* held = data.release();
+    nb::capsule owner(held, [](void* p) noexcept { delete[] static_cast<T*>(p); });
+    return nb::ndarray<nb::numpy, T>(held, {size_t(shape)...}, owner);
 }
 
 std::vector<carom::StartSphere> spheres(const Vectors& position, const Numbers& radius,
@@ -86,10 +92,10 @@ auto make_engine(const Vectors& position, const Vectors& velocity, const Numbers
 
 auto state_of(const Engine& engine) {
     const size_t n = engine.size();
-    std::vector<double> position(3 * n), velocity(3 * n);
-    std::vector<int32_t> image(3 * n);
-    std::vector<uint32_t> count(n);
-    std::vector<uint8_t> resting(n);
+    auto position = room_for<double>(3 * n), velocity = room_for<double>(3 * n);
+    auto image = room_for<int32_t>(3 * n);
+    auto count = room_for<uint32_t>(n);
+    auto resting = room_for<uint8_t>(n);
     {
         const nb::gil_scoped_release release;
         for (size_t i = 0; i < n; ++i) {
@@ -112,9 +118,9 @@ auto state_of(const Engine& engine) {
 auto take_log(Engine& engine) {
     double start = 0;
     const std::vector<carom::Record> log = engine.take_log(start);
-    std::vector<uint8_t> bytes(log.size() * sizeof(carom::Record));
-    if (!log.empty()) std::memcpy(bytes.data(), log.data(), bytes.size());
-    const size_t n = bytes.size();
+    const size_t n = log.size() * sizeof(carom::Record);
+    auto bytes = room_for<uint8_t>(n);
+    if (n > 0) std::memcpy(bytes.get(), log.data(), n);
     return nb::make_tuple(start, array_of(std::move(bytes), n));
 }
 
