@@ -204,6 +204,18 @@ def test_single_arrows_go_from_place_to_place(draw):
     assert not changed(plain, none).any()
 
 
+def test_a_single_arrow_shines_through_what_hides_it(draw):
+    look = [[0, -20, 0], [0, 0, 0]]
+    ends = {"from": [-0.6, 3, 0], "to": [0.6, 3, 0]}  # behind the ball, for an eye at y = -20
+    arrow = {"side": 0, **ends, "color": [0.2, 1, 0.4], "strength": 1}
+    bare = draw([(0, 0, 0)], look=look)
+    hidden = draw([(0, 0, 0)], look=look, arrows=[arrow])
+    ys, xs = np.nonzero(changed(bare, hidden))
+    assert len(xs) > 100
+    greener = (hidden.picture - bare.picture)[ys, xs, 1]
+    assert np.median(greener) > 10
+
+
 def test_two_sides_show_two_moments(draw):
     look = [[0, -26, 0], [0, 0, 0]]
     drawn = draw([(-2, 0, 0)], second=[(2, 0, 0)], v=[4, 0, 0], t=[0, 1], look=look)

@@ -14,6 +14,7 @@ const MESH = 9; // the attribute's place, behind those of the spheres
 const LONG = 5; // median radii, at the end of the speed scale, which is twice the usual speed,
 const FAR = 0.2; // or this part of the scene's reach, if that is more: then spheres are far apart
 const START = 0.96; // radii from the centre: the arrow grows out of the surface
+const HIDDEN = 0.25; // strength of the part of a single arrow that lies behind spheres
 const THICKNESS = 0.13; // of the shaft, median radii; thinner on smaller spheres
 
 /**
@@ -203,6 +204,14 @@ export class Arrows {
       const thick = Math.max(1.25 * THICKNESS * look.pair.traits.typical, 1.6 * pixel);
       program.set({ uFrom: from, uTo: to, uColor: color, uThick: thick, uStrength: strength });
       gl.bindVertexArray(this.array);
+      // What spheres hide of it shines through them.
+      gl.depthFunc(gl.GREATER);
+      gl.depthMask(false);
+      program.set({ uStrength: HIDDEN * strength });
+      gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_SHORT, 0);
+      gl.depthFunc(gl.LEQUAL);
+      gl.depthMask(true);
+      program.set({ uStrength: strength });
       // Seen through, but not through itself: first its depth alone, then what is nearest.
       if (strength < 1) {
         gl.colorMask(false, false, false, false);
