@@ -104,3 +104,13 @@ def test_the_architecture_lists_every_file_and_no_other() -> None:
 
     assert first_words(core, "hpp|cpp") == {p.name for p in (ROOT / "core").glob("*.[hc]pp")}
     assert first_words(package, "py") == {p.name for p in PACKAGE.glob("*.py")}
+
+
+def test_the_architecture_names_every_part_of_the_live_view() -> None:
+    text = (ROOT / "ARCHITECTURE.md").read_text(encoding="utf-8")
+    listing = text.split("### The live view")[1].split("```")[1]
+    named = set(re.findall(r"[\w*]+", listing))
+    view = PACKAGE / "view"
+    scripts = {p.stem for p in view.glob("static/*.js") if not p.stem.startswith("sketch")}
+    modules = {p.stem for p in view.glob("*.py")} - {"__init__"}
+    assert scripts | modules <= named
