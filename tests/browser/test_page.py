@@ -9,7 +9,6 @@ import pytest
 
 import carom
 from carom import scenes
-from carom.view import LiveView
 
 from .png import pixels
 
@@ -363,38 +362,15 @@ def test_it_calls_again_when_the_line_was_cut(show):
     shown.wait(f"carom.timeline.t > {moment}")
 
 
-def test_other_sites_cannot_listen(chromium, show):
-    """Pages of another origin, in the same browser, get no connection."""
-    shown = show(still_life())
-    address = shown.view.url.split("/#")[0].removeprefix("http://")
-    knock = """(address) => new Promise((done) => {
-      const socket = new WebSocket(`ws://${address}/live`);
-      socket.onopen = () => done("open");
-      socket.onerror = () => done("refused");
-    })"""
-    with LiveView(still_life()) as other:
-        for place in (other.url.split("#")[0], "about:blank"):
-            page = chromium.new_page()
-            page.goto(place)
-            assert page.evaluate(knock, address) == "refused"
-            page.close()
-
-
-def test_other_sites_cannot_frame_it(chromium, show):
-    shown = show(still_life())
-    page = chromium.new_page()
-    complaints = []
-    page.on("console", lambda message: complaints.append(message.text))
-    page.set_content(f"<iframe src='{shown.view.url.split('#')[0]}'></iframe>")
-    end = time.perf_counter() + 5
-    while not complaints and time.perf_counter() < end:
-        page.wait_for_timeout(50)
-    assert "frame-ancestors" in complaints[0]
-    page.close()
-
-
-def test_a_failure_is_told_in_words(show):
-    shown = show(carom.Simulation(), wait=False)
+def test_a_failure_is_told_in_words_and_its_cure_lets_time_run_on(show):
+    sim = carom.Simulation(rule=carom.Smooth(restitution=0.05))
+    for x, v in ((-2, 1), (0, 0), (2, -1)):
+        sim.add((x, 0, 0), velocity=(v, 0, 0))
+    shown = show(sim, wait=False)
     banner = shown.page.locator("#failure")
     banner.wait_for(state="visible")
-    assert "no spheres" in banner.inner_text()
+    assert "Spheres 1 and 2 collapse at time 1" in banner.inner_text()
+    shown.js("carom.connection.send(JSON.stringify({ op: 'rule', restitution: 0.5 }))")
+    banner.wait_for(state="hidden")
+    shown.page.keyboard.press("Space")
+    shown.wait("carom.timeline.t > 1.2")
