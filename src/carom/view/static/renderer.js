@@ -79,7 +79,7 @@ export class Renderer {
       antialias: false,
       powerPreference: "high-performance",
     });
-    if (gl === null) throw new Error("this browser has no WebGL 2");
+    if (gl === null) throw new Error("this browser draws no WebGL 2; update it, or turn on its hardware acceleration");
     this.canvas = canvas;
     this.gl = gl;
     const names = gl.getExtension("WEBGL_debug_renderer_info");

@@ -17,7 +17,7 @@ export class SketchRenderer {
       antialias: true,
       powerPreference: "high-performance",
     });
-    if (gl === null) throw new Error("this browser has no WebGL 2");
+    if (gl === null) throw new Error("this browser draws no WebGL 2; update it, or turn on its hardware acceleration");
     this.canvas = canvas;
     this.gl = gl;
     this.programs = {
