@@ -23,7 +23,10 @@ def test_a_state_taken_while_it_runs_is_whole() -> None:
     thread = threading.Thread(target=run)
     thread.start()
     try:
-        for _ in range(100):
+        end, looks = time.perf_counter() + 30, 0
+        while looks < 100 or engine.collisions <= 1000:
+            assert time.perf_counter() < end
+            looks += 1
             seen = engine.state()
             assert abs(np.sum(seen.velocity**2) / start - 1) < 1e-12
             assert len(engine.take_events()) >= 0
@@ -31,7 +34,6 @@ def test_a_state_taken_while_it_runs_is_whole() -> None:
     finally:
         done.set()
         thread.join()
-    assert engine.collisions > 1000
 
 
 def test_far_outliers_do_not_slow_a_cluster() -> None:
