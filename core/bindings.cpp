@@ -5,6 +5,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
 
 #include <cstring>
 #include <memory>
@@ -71,7 +72,7 @@ auto make_engine(const Vectors& position, const Vectors& velocity, const Numbers
                  const Images& image, const Counts& count, double time, const Three& period,
                  const WallRows& walls, double restitution, double contact_time,
                  const Three& gravity, bool collide, double margin, double cell, bool log,
-                 double slice) {
+                 double slice, const std::string& simd, bool sort) {
     std::vector<carom::StartSphere> start = spheres(position, radius, fixed);
     const size_t n = start.size();
     if (velocity.shape(0) != n || mass.shape(0) != n || resting.shape(0) != n ||
@@ -87,7 +88,8 @@ auto make_engine(const Vectors& position, const Vectors& velocity, const Numbers
     const carom::World world{three(period), walls_from(walls), restitution,
                              contact_time,  three(gravity),    collide};
     const nb::gil_scoped_release release;
-    return std::make_unique<Engine>(start, time, world, carom::Tuning{margin, cell, log, slice});
+    return std::make_unique<Engine>(start, time, world, 
+                                    carom::Tuning{margin, cell, log, slice, simd, sort});
 }
 
 auto state_of(const Engine& engine) {
@@ -135,7 +137,8 @@ NB_MODULE(_core, m) {
              nb::arg("count"), nb::arg("time"), nb::arg("period"), nb::arg("walls"),
              nb::arg("restitution"), nb::arg("contact_time"), nb::arg("gravity"),
              nb::arg("collide"), nb::arg("margin") = 0.0, nb::arg("cell") = 0.0,
-             nb::arg("log") = true, nb::arg("slice") = 0.05)
+             nb::arg("log") = true, nb::arg("slice") = 0.05, nb::arg("simd") = "",
+             nb::arg("sort") = true)
         .def(
             "advance",
             [](Engine& e, double until, int64_t max_collisions, int64_t max_events) {
@@ -177,6 +180,12 @@ NB_MODULE(_core, m) {
                 return std::make_tuple(c.time, c.i, c.j);
             },
             "(time, i, j) of an inelastic collapse, or None.");
+
+    m.def("simd_levels", &carom::simd_levels,
+          "Instruction sets that this machine can run, slowest first.");
+    m.def(
+        "simd", [] { return std::string(carom::kernels().name); },
+        "The instruction set in use; the environment variable CAROM_SIMD chooses another.");
 
     m.def(
         "first_overlap",

@@ -1,9 +1,10 @@
 // The event queue: a calendar of buckets, each one cache line of sphere numbers.
 //
 // Every sphere has one pending event, at `time[i]`. An entry is never deleted: it is dead when its
-// sphere's event has moved to another bucket, or is no longer the one the entry was made for. The
-// bucket in hand is a small heap, ordered by (time, i, j), so that simultaneous events come in an
-// order that nobody's bookkeeping can change.
+// sphere's event has moved to another time. The bucket in hand is a short list, searched anew for
+// each event; simultaneous events come in the order of the spheres' labels, which nobody's
+// bookkeeping can change. A bucket that holds a crowd (a lattice start: thousands of collisions in
+// one moment) is a heap instead.
 #pragma once
 
 #include <algorithm>
@@ -17,25 +18,25 @@
 
 namespace carom {
 
-struct Entry {
-    double t;
-    int32_t a, b;  // the event's order among simultaneous ones
-    int32_t id;    // whose event it is
+// What the queue sees of the engine: pending events, and the names by which equals are ordered.
+struct Pending {
+    const Event* events;
+    const int32_t* labels;
+    size_t n;
 };
-inline bool later(const Entry& p, const Entry& q) {
-    if (p.t != q.t) return p.t > q.t;
-    if (p.a != q.a) return p.a > q.a;
-    if (p.b != q.b) return p.b > q.b;
-    return p.id > q.id;
-}
 
 class Calendar {
 public:
+    struct Due {
+        double t;
+        int32_t id;  // whose event it is
+    };
+
     // Empties it and chooses buckets for the events now pending, a few to each.
-    void reset(const std::vector<Event>& events, double now) {
+    void reset(const Pending& p, double now) {
         std::vector<double> waits;
-        for (const Event& e : events)
-            if (e.t < kNever) waits.push_back(e.t - now);
+        for (size_t i = 0; i < p.n; ++i)
+            if (p.events[i].t < kNever) waits.push_back(p.events[i].t - now);
         inverse_width_ = 1;
         if (!waits.empty()) {
             // The median wait, blind to the few far away, stands for the mean.
@@ -45,67 +46,77 @@ public:
             if (width > 1e-250) inverse_width_ = 1 / width;
         }
         size_t buckets = 64;
-        while (buckets * 2 < events.size()) buckets *= 2;
+        while (buckets * 2 < p.n) buckets *= 2;
         lines_.assign(buckets, Line{});
         mask_ = int64_t(buckets) - 1;
         spare_ = -1;
+        few_ = 0;
         heap_.clear();
         current_ = bucket_of(now);
-        for (size_t i = 0; i < events.size(); ++i) schedule(int(i), events[i]);
+        for (size_t i = 0; i < p.n; ++i) schedule(int(i), p);
     }
 
-    void schedule(int i, const Event& e) {
-        if (e.t == kNever) return;
-        const int64_t k = bucket_of(e.t);
-        if (k <= current_) {
-            heap_.push_back(entry(i, e));
-            std::push_heap(heap_.begin(), heap_.end(), later);
-        } else {
+    void schedule(int i, const Pending& p) {
+        const double t = p.events[i].t;
+        if (t == kNever) return;
+        const int64_t k = bucket_of(t);
+        if (k <= current_)
+            insert(i, p);
+        else
             push(k & mask_, i);
-        }
     }
 
-    // The next entry that may be due, or null if none is at or before `limit`. It may be stale.
-    const Entry* top(const std::vector<Event>& events, double limit) {
+    // The next event, if one is at or before `limit`.
+    bool next(const Pending& p, double limit, Due& due) {
         int64_t walked = 0;
-        while (heap_.empty()) {
-            if (limit < kNever && bucket_of(limit) <= current_) return nullptr;
+        for (;;) {
+            if (first(p, due)) return due.t <= limit;
+            if (limit < kNever && bucket_of(limit) <= current_) return false;
             if (walked++ > mask_) {  // a whole year of nothing: jump to the next event there is
-                double next = kNever;
-                for (const Event& e : events) next = std::min(next, e.t);
-                if (next > limit || next == kNever) return nullptr;
-                current_ = std::max(current_ + 1, bucket_of(next)) - 1;
+                double soonest = kNever;
+                for (size_t i = 0; i < p.n; ++i) soonest = std::min(soonest, p.events[i].t);
+                if (soonest > limit || soonest == kNever) return false;
+                current_ = std::max(current_ + 1, bucket_of(soonest)) - 1;
                 walked = 0;
             }
             ++current_;
-            open(events);
+            open(p);
         }
-        return heap_.front().t <= limit ? &heap_.front() : nullptr;
     }
 
-    // Is this still what its sphere does next? A sphere may have got another event since, even one
-    // of the same time: that has an entry, and a place in the order, of its own.
-    static bool live(const Entry& e, const Event& event) {
-        if (event.t != e.t) return false;
-        const Entry now = entry(e.id, event);
-        return now.a == e.a && now.b == e.b;
-    }
-
+    // Takes the event that `next` has shown off the list.
     void pop() {
-        std::pop_heap(heap_.begin(), heap_.end(), later);
-        heap_.pop_back();
+        if (heap_.empty()) {
+            --few_;
+            times_[at_] = times_[few_];
+            ids_[at_] = ids_[few_];
+        } else {
+            std::pop_heap(heap_.begin(), heap_.end(), later);
+            heap_.pop_back();
+        }
     }
 
     size_t bytes() const { return lines_.capacity() * sizeof(Line); }
 
 private:
     static constexpr double kPerBucket = 4;
-    static constexpr int kIds = 14;
+    static constexpr int kIds = 14, kFew = 24;
     struct alignas(64) Line {
         int32_t n = 0;
         int32_t next = -1;
         int32_t id[kIds];
     };
+    struct Entry {
+        double t;
+        int32_t a, b;  // the event's order among simultaneous ones
+        int32_t id;
+    };
+    static bool later(const Entry& p, const Entry& q) {
+        if (p.t != q.t) return p.t > q.t;
+        if (p.a != q.a) return p.a > q.a;
+        if (p.b != q.b) return p.b > q.b;
+        return p.id > q.id;
+    }
 
     int64_t bucket_of(double t) const {
         const double k = t * inverse_width_;
@@ -114,10 +125,70 @@ private:
 
     // Bookkeeping comes before collisions of the same time: whatever is due then must be known
     // before the first of them happens.
-    static Entry entry(int i, const Event& e) {
-        if (e.partner == kEscape) return {e.t, -1, i, i};
-        if (e.partner < 0) return {e.t, i, e.partner, i};
-        return {e.t, std::min(i, e.partner), std::max(i, e.partner), i};
+    static Entry entry(int i, const Pending& p) {
+        const Event& e = p.events[i];
+        const int32_t own = p.labels[i];
+        if (e.partner == kEscape) return {e.t, -1, own, i};
+        if (e.partner < 0) return {e.t, own, e.partner, i};
+        const int32_t other = p.labels[e.partner];
+        return {e.t, std::min(own, other), std::max(own, other), i};
+    }
+
+    void insert(int i, const Pending& p) {
+        if (!heap_.empty()) {
+            heap_.push_back(entry(i, p));
+            std::push_heap(heap_.begin(), heap_.end(), later);
+            return;
+        }
+        if (few_ < kFew) {
+            times_[few_] = p.events[i].t;
+            ids_[few_++] = i;
+            return;
+        }
+        for (; few_ > 0; --few_) {  // a crowd
+            const int32_t k = ids_[few_ - 1];
+            if (p.events[k].t == times_[few_ - 1]) heap_.push_back(entry(k, p));
+        }
+        heap_.push_back(entry(i, p));
+        std::make_heap(heap_.begin(), heap_.end(), later);
+    }
+
+    // First of the bucket in hand whose event still stands.
+    bool first(const Pending& p, Due& due) {
+        while (few_ > 0) {
+            double t = times_[0];
+            int at = 0;
+            for (int k = 1; k < few_; ++k) {
+                const bool sooner = times_[k] < t;
+                t = sooner ? times_[k] : t;
+                at = sooner ? k : at;
+            }
+            at_ = at;
+            if (p.events[ids_[at]].t != t) {
+                pop();
+                continue;
+            }
+            for (int k = at + 1; k < few_; ++k) {  // equals
+                if (times_[k] != t || p.events[ids_[k]].t != t) continue;
+                if (later(entry(ids_[at_], p), entry(ids_[k], p))) at_ = k;
+            }
+            due = {t, ids_[at_]};
+            return true;
+        }
+        while (!heap_.empty()) {
+            // A sphere may have got another event since, even one of the same time: that has an
+            // entry, and a place in the order, of its own.
+            const Entry& top = heap_.front();
+            if (p.events[top.id].t == top.t) {
+                const Entry now = entry(top.id, p);
+                if (now.a == top.a && now.b == top.b) {
+                    due = {top.t, top.id};
+                    return true;
+                }
+            }
+            pop();
+        }
+        return false;
     }
 
     void push(int64_t slot, int i) {
@@ -140,8 +211,8 @@ private:
         first.id[0] = i;
     }
 
-    // Takes the current bucket into the heap; what belongs to a later year goes back.
-    void open(const std::vector<Event>& events) {
+    // Takes the current bucket in hand; what belongs to a later year goes back.
+    void open(const Pending& p) {
         const int64_t slot = current_ & mask_;
         if (lines_[size_t(slot)].n == 0) return;
         again_.clear();
@@ -149,11 +220,10 @@ private:
             Line& line = lines_[size_t(c)];
             for (int k = 0; k < line.n; ++k) {
                 const int i = line.id[k];
-                const Event& e = events[size_t(i)];
-                const int64_t b = bucket_of(e.t);
+                const int64_t b = bucket_of(p.events[i].t);
                 if (b == current_)
-                    heap_.push_back(entry(i, e));
-                else if (b > current_ && (b & mask_) == slot && e.t < kNever)
+                    insert(i, p);
+                else if (b > current_ && (b & mask_) == slot && p.events[i].t < kNever)
                     again_.push_back(i);
             }
             const int32_t next = line.next;
@@ -165,15 +235,17 @@ private:
             }
             c = next;
         }
-        std::make_heap(heap_.begin(), heap_.end(), later);
         for (const int32_t i : again_) push(slot, i);
     }
 
     double inverse_width_ = 1;
     int64_t mask_ = 63, current_ = 0;
-    std::vector<Line> lines_;
+    Array<Line> lines_;
     int32_t spare_ = -1;  // chain of spare lines
-    std::vector<Entry> heap_;
+    int few_ = 0, at_ = 0;
+    double times_[kFew];
+    int32_t ids_[kFew];
+    std::vector<Entry> heap_;  // instead, while not empty
     std::vector<int32_t> again_;
 };
 

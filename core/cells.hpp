@@ -6,15 +6,17 @@
 // may share a slot; the distance test tells them apart. So the cells need no borders, and follow
 // the spheres wherever they fly.
 //
-// A cell is one cache line: seven shells with their place in the cell to 1/256 of its width. Most
-// candidates are turned away by integer arithmetic on that line alone.
+// A cell is one cache line: seven shells with their place in the cell to 1/256 of its width. Who is
+// near is decided by integer arithmetic on that line alone.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "memory.hpp"
+#include "simd/kernels.hpp"
 #include "vec3.hpp"
 
 namespace carom {
@@ -24,15 +26,29 @@ struct Shell {
     double reach = 0;  // radius of the sphere + margin it may move before the shell is remade
 };
 
+// Numbers of spheres.
+struct Found {
+    std::vector<int32_t> id = std::vector<int32_t>(64);
+    size_t n = 0;
+
+    void add(int32_t j) {
+        if (n == id.size()) id.resize(2 * n);
+        id[n++] = j;
+    }
+    std::span<const int32_t> ids() const { return {id.data(), n}; }
+};
+
 class Cells {
 public:
     // `width`: of the lowest level's cells. `period`: 0 on axes that are not periodic. `extent`: of
     // the spheres at the start, along each axis.
-    void reset(double width, const Vec3& period, const Vec3& extent, size_t count) {
+    void reset(double width, const Vec3& period, const Vec3& extent, size_t count,
+               const Kernels& kernels) {
         width_ = width;
         period_ = period;
         extent_ = extent;
         count_ = count;
+        kernels_ = &kernels;
         inverse_period_ = inverse(period);
         levels_.clear();
         lines_.clear();
@@ -48,14 +64,17 @@ public:
     void remove(int i, const Shell& s) {
         Level& level = levels_[size_t(level_of(s.reach))];
         --level.population;
-        take(slot_of(level, s.centre), i);
+        take(slot_of(level, in_cells(s.centre, level)), i);
     }
 
-    // Appends to `out` every j with |centre - centre_j| < reach + reach_j (nearest image), i itself
-    // and j its own image excluded by not being in the cells while it searches.
-    void search(const Shell& s, const std::vector<Shell>& shells, std::vector<int32_t>& out) const {
+    // Every j with |centre - centre_j| < reach + reach_j (nearest image) or a hair more, none
+    // twice: i itself only if it is in the cells while it searches. The answer is the same from
+    // both sides. `shell_of` is asked only where cells are few or met twice.
+    template <class ShellOf>
+    void search(const Shell& s, const ShellOf& shell_of, Found& out) const {
+        out.n = 0;
         for (const Level& level : levels_)
-            if (level.population > 0) search(level, s, shells, out);
+            if (level.population > 0) search(level, s, shell_of, out);
     }
 
     double distance2(const Vec3& a, const Vec3& b) const {
@@ -67,17 +86,11 @@ public:
     size_t bytes() const { return lines_.capacity() * sizeof(Line); }
 
 private:
-    static constexpr int kSlots = 7;
-    struct alignas(64) Line {
-        int32_t n = 0;
-        int32_t next = -1;  // the line behind, when seven are not enough
-        int32_t id[kSlots];
-        uint8_t x[kSlots], y[kSlots], z[kSlots];  // in 1/256 of the cell, rounded down
-        uint8_t reach[kSlots];                    // in the same unit, rounded up
-    };
-    static_assert(sizeof(Line) == 64);
+    using Line = CellLine;
     struct Level {
         Vec3 inverse_width;
+        double steps[3];          // of a cell's width: 255 along the widest axis
+        double steps_per_length;
         int64_t n[3];   // cells per axis
         int64_t first;  // index of its first line
         int64_t population = 0;
@@ -115,6 +128,8 @@ private:
             inverse_width[a] = p[a] > 0 ? n[a] / p[a] : 1 / w;
         }
         level.inverse_width = {inverse_width[0], inverse_width[1], inverse_width[2]};
+        level.steps_per_length = 255 * *std::min_element(inverse_width, inverse_width + 3);
+        for (int a = 0; a < 3; ++a) level.steps[a] = level.steps_per_length / inverse_width[a];
         level.first = int64_t(lines_.size());
         lines_.resize(lines_.size() + size_t(level.n[0] * level.n[1] * level.n[2]));
         return level;
@@ -124,119 +139,123 @@ private:
         return std::clamp(std::ceil(extent / w), 4.0, 1e7);
     }
 
-    // Cell coordinate along an axis. Clamped so that no distance overflows an integer; clamping
-    // keeps near cells near.
-    static double coordinate(double x, double inverse_width) {
-        return std::clamp(std::floor(x * inverse_width), -1e15, 1e15);
+    // In units of the level's cells. Clamped so that no distance overflows an integer; clamping
+    // keeps near places near.
+    static Vec3 in_cells(const Vec3& x, const Level& l) {
+        const auto clamped = [](double u) { return std::clamp(u, -1e15, 1e15); };
+        const Vec3 u = x * l.inverse_width;
+        return {clamped(u.x), clamped(u.y), clamped(u.z)};
     }
-    static int64_t wrap(double coordinate, int64_t n) {
-        const auto c = int64_t(coordinate);
+    static int64_t wrap(double cell, int64_t n) {
+        auto c = int64_t(cell);
+        c += c < 0 ? n : 0;
         if (c >= 0 && c < n) return c;
         const int64_t r = c % n;
         return r < 0 ? r + n : r;
     }
-    // 0 ... 255 within the cell.
-    static int fine(double x, double inverse_width) {
-        const double u = x * inverse_width;
-        return int(std::clamp(std::floor((u - std::floor(u)) * 256), 0.0, 255.0));
+    static int32_t slot_of(const Level& l, const Vec3& u) {
+        const int64_t a = wrap(floored(u.x), l.n[0]), b = wrap(floored(u.y), l.n[1]),
+                      c = wrap(floored(u.z), l.n[2]);
+        return int32_t(l.first + (c * l.n[1] + b) * l.n[0] + a);
     }
+    // Place within the cell, in steps of which `steps` make a cell.
+    static int fine(double u, double steps) { return int((u - floored(u)) * steps); }
     static int fine_reach(double reach, const Level& l) {
-        const double finest =
-            std::max(l.inverse_width.x, std::max(l.inverse_width.y, l.inverse_width.z));
-        return int(std::min(std::ceil(reach * finest * 256), 1e6));
-    }
-    int64_t slot_of(const Level& l, const Vec3& x) const {
-        const int64_t a = wrap(coordinate(x.x, l.inverse_width.x), l.n[0]);
-        const int64_t b = wrap(coordinate(x.y, l.inverse_width.y), l.n[1]);
-        const int64_t c = wrap(coordinate(x.z, l.inverse_width.z), l.n[2]);
-        return l.first + (c * l.n[1] + b) * l.n[0] + a;
+        return int(std::min(floored(reach * l.steps_per_length) + 1, 1e6));
     }
 
-    // The slots that a search visits along one axis.
-    struct Axis {
-        int64_t slot, count, n;  // first slot, how many, wrapping at n
-        int near;                // fine coordinate of the searcher, seen from the first cell
-        bool exact;              // no cell is met twice and none is far: fine coordinates tell
+    // The cells within `radius`, a number of cells, of a place along one axis.
+    struct Range {
+        int64_t first, count, n;  // wrapping at n
+        double before;            // from the first cell to the searcher's
+        bool exact;               // none is met twice and none is far: places tell distances
     };
-    static Axis axis(double x, double radius, double inverse_width, int64_t n) {
-        const double lo = coordinate(x - radius, inverse_width),
-                     hi = coordinate(x + radius, inverse_width);
-        const double count = hi - lo + 1;
+    static Range range(double u, double radius, int64_t n) {
+        const double own = floored(u), part = u - own;
+        const double lo = floored(part - radius), count = floored(part + radius) - lo + 1;
         if (!(count < double(n))) return {0, n, n, 0, false};
-        const double cells = coordinate(x, inverse_width) - lo;
-        const bool exact = count < 64;
-        return {wrap(lo, n), int64_t(count), n,
-                exact ? int(cells) * 256 + fine(x, inverse_width) : 0, exact};
+        return {wrap(own + lo, n), int64_t(count), n, -lo, count <= CellBlock::kMost};
+    }
+    static void fill(CellBlock::Axis& a, const Range& r, double u, double steps, int64_t stride,
+                     int64_t first) {
+        a.n = int32_t(r.count);
+        const int place = fine(u, steps);
+        int64_t slot = r.first;
+        for (int k = 0; k < a.n; ++k) {
+            a.line[k] = int32_t(first + slot * stride);
+            a.seen[k] = int16_t(place + int(nearest((r.before - k) * steps)));
+            slot = slot + 1 == r.n ? 0 : slot + 1;
+        }
     }
 
-    void search(const Level& l, const Shell& s, const std::vector<Shell>& shells,
-                std::vector<int32_t>& out) const {
+    template <class ShellOf>
+    void search(const Level& l, const Shell& s, const ShellOf& shell_of, Found& out) const {
         // Shells on this level reach at most half a cell.
-        const Vec3& iw = l.inverse_width;
-        const Axis ax = axis(s.centre.x, s.reach + 0.5 / iw.x, iw.x, l.n[0]);
-        const Axis ay = axis(s.centre.y, s.reach + 0.5 / iw.y, iw.y, l.n[1]);
-        const Axis az = axis(s.centre.z, s.reach + 0.5 / iw.z, iw.z, l.n[2]);
-        const bool exact = ax.exact && ay.exact && az.exact && iw.x == iw.y && iw.y == iw.z;
-        const int reach = fine_reach(s.reach, l) + 2;  // 2 > sqrt(3): both places are rounded
-        const auto each = [&](auto visit) {
-            int64_t z = az.slot;
-            for (int64_t kz = 0; kz < az.count; ++kz, z = z + 1 == az.n ? 0 : z + 1) {
-                int64_t y = ay.slot;
-                for (int64_t ky = 0; ky < ay.count; ++ky, y = y + 1 == ay.n ? 0 : y + 1) {
-                    const Line* row = &lines_[size_t(l.first + (z * ay.n + y) * ax.n)];
-                    int64_t x = ax.slot;
-                    for (int64_t kx = 0; kx < ax.count; ++kx, x = x + 1 == ax.n ? 0 : x + 1)
-                        visit(row[x], int(kx), int(ky), int(kz));
+        const Vec3 u = in_cells(s.centre, l), radius = l.inverse_width * s.reach;
+        const Range x = range(u.x, radius.x + 0.5, l.n[0]), y = range(u.y, radius.y + 0.5, l.n[1]),
+                    z = range(u.z, radius.z + 0.5, l.n[2]);
+        // Two places and a step between cells are rounded: 3 > sqrt(3) (1 + 1/2).
+        const int reach = fine_reach(s.reach, l) + 3;
+        if (!x.exact || !y.exact || !z.exact || reach >= (1 << 14))
+            return all(l, x, y, z, s, shell_of, out);
+        CellBlock block;
+        block.minus_reach = int16_t(-reach);
+        fill(block.x, x, u.x, l.steps[0], 1, 0);
+        fill(block.y, y, u.y, l.steps[1], x.n, 0);
+        fill(block.z, z, u.z, l.steps[2], x.n * y.n, l.first);
+        near(block, out);
+    }
+
+    void near(const CellBlock& block, Found& out) const {
+        for (int kz = 0; kz < block.z.n; ++kz)
+            for (int ky = 0; ky < block.y.n; ++ky)
+                for (int kx = 0; kx < block.x.n; ++kx)
+                    fetch(&lines_[size_t(block.z.line[kz] + block.y.line[ky] + block.x.line[kx])]);
+        for (;;) {
+            const int32_t more = kernels_->near(lines_.data(), block, &out.id[out.n],
+                                                int32_t(out.id.size() - out.n));
+            if (more >= 0) {
+                out.n += size_t(more);
+                return;
+            }
+            out.id.resize(2 * out.id.size());
+        }
+    }
+
+    template <class ShellOf>
+    void all(const Level& l, const Range& rx, const Range& ry, const Range& rz, const Shell& s,
+             const ShellOf& shell_of, Found& out) const {
+        const auto each = [](const Range& r, auto visit) {
+            int64_t slot = r.first;
+            for (int64_t k = 0; k < r.count; ++k, slot = slot + 1 == r.n ? 0 : slot + 1) visit(slot);
+        };
+        const auto look = [&](int64_t slot) {
+            for (auto at = int32_t(slot); at >= 0; at = lines_[size_t(at)].next) {
+                for (const int32_t j : lines_[size_t(at)].id) {
+                    if (j < 0) break;
+                    const Shell o = shell_of(j);
+                    const double near = s.reach + o.reach;
+                    if (distance2(s.centre, o.centre) < near * near) out.add(j);
                 }
             }
         };
-        each([](const Line& line, int, int, int) { fetch(&line); });
-        if (!exact)
-            return each([&](const Line& line, int, int, int) { all(line, s, shells, out); });
-        each([&](const Line& line, int x, int y, int z) {
-            filter(line, ax.near - 256 * x, ay.near - 256 * y, az.near - 256 * z, reach, s, shells,
-                   out);
+        each(rz, [&](int64_t z) {
+            each(ry, [&](int64_t y) {
+                each(rx, [&](int64_t x) { look(l.first + (z * ry.n + y) * rx.n + x); });
+            });
         });
-    }
-
-    void filter(const Line& head, int dx, int dy, int dz, int reach, const Shell& s,
-                const std::vector<Shell>& shells, std::vector<int32_t>& out) const {
-        for (const Line* line = &head;; line = &lines_[size_t(line->next)]) {
-            for (int k = 0; k < line->n; ++k) {
-                const int x = dx - line->x[k], y = dy - line->y[k], z = dz - line->z[k],
-                          r = reach + line->reach[k];
-                if (x * x + y * y + z * z < r * r) accept(line->id[k], s, shells, out);
-            }
-            if (line->next < 0) return;
-        }
-    }
-
-    void all(const Line& head, const Shell& s, const std::vector<Shell>& shells,
-             std::vector<int32_t>& out) const {
-        for (const Line* line = &head;; line = &lines_[size_t(line->next)]) {
-            for (int k = 0; k < line->n; ++k) accept(line->id[k], s, shells, out);
-            if (line->next < 0) return;
-        }
-    }
-
-    void accept(int32_t j, const Shell& s, const std::vector<Shell>& shells,
-                std::vector<int32_t>& out) const {
-        const Shell& o = shells[size_t(j)];
-        const double near = s.reach + o.reach;
-        if (distance2(s.centre, o.centre) < near * near) out.push_back(j);
     }
 
     static void move(const Line& from, int k, Line& to, int at) {
         to.id[at] = from.id[k];
-        to.x[at] = from.x[k];
-        to.y[at] = from.y[k];
-        to.z[at] = from.z[k];
-        to.reach[at] = from.reach[k];
+        to.xy[at] = from.xy[k];
+        to.zr[at] = from.zr[k];
     }
 
     void push(const Level& l, int i, const Shell& s) {
-        const int64_t slot = slot_of(l, s.centre);
-        if (lines_[size_t(slot)].n == kSlots) {  // full: its content moves to a line behind it
+        const Vec3 u = in_cells(s.centre, l);
+        const auto slot = size_t(slot_of(l, u));
+        if (lines_[slot].full()) {  // its content moves to a line behind it
             int32_t spare = free_;
             if (spare >= 0) {
                 free_ = lines_[size_t(spare)].next;
@@ -244,42 +263,44 @@ private:
                 spare = int32_t(lines_.size());
                 grow(lines_);
             }
-            lines_[size_t(spare)] = lines_[size_t(slot)];
-            lines_[size_t(slot)].next = spare;
-            lines_[size_t(slot)].n = 0;
+            lines_[size_t(spare)] = lines_[slot];
+            lines_[slot] = Line{};
+            lines_[slot].next = spare;
         }
-        Line& head = lines_[size_t(slot)];
-        const int k = head.n++;
+        Line& head = lines_[slot];
+        const int k = head.size();
         head.id[k] = i;
-        head.x[k] = uint8_t(fine(s.centre.x, l.inverse_width.x));
-        head.y[k] = uint8_t(fine(s.centre.y, l.inverse_width.y));
-        head.z[k] = uint8_t(fine(s.centre.z, l.inverse_width.z));
-        head.reach[k] = uint8_t(std::min(fine_reach(s.reach, l), 255));
+        head.xy[k] = {uint8_t(fine(u.x, l.steps[0])), uint8_t(fine(u.y, l.steps[1]))};
+        head.zr[k] = {uint8_t(fine(u.z, l.steps[2])),
+                      uint8_t(std::min(fine_reach(s.reach, l), 255))};
     }
 
-    void take(int64_t slot, int i) {
+    void take(int32_t slot, int i) {
         Line& head = lines_[size_t(slot)];
-        for (int64_t c = slot; c >= 0; c = lines_[size_t(c)].next) {
+        for (int32_t c = slot; c >= 0; c = lines_[size_t(c)].next) {
             Line& line = lines_[size_t(c)];
-            for (int k = 0; k < line.n; ++k) {
-                if (line.id[k] != i) continue;
-                move(head, --head.n, line, k);
-                if (head.n == 0 && head.next >= 0) {  // the line behind becomes the head
-                    const int32_t behind = head.next;
-                    head = lines_[size_t(behind)];
-                    lines_[size_t(behind)].next = free_;
-                    free_ = behind;
-                }
-                return;
+            const int k = line.find(i);
+            if (k < 0) continue;
+            const int last = head.size() - 1;
+            move(head, last, line, k);
+            head.id[last] = -1;
+            if (last == 0 && head.next >= 0) {  // the line behind becomes the head
+                const int32_t behind = head.next;
+                head = lines_[size_t(behind)];
+                lines_[size_t(behind)].next = free_;
+                free_ = behind;
             }
+            return;
         }
     }
+
 
     double width_ = 1;
     Vec3 period_, inverse_period_, extent_;
     size_t count_ = 0;
     std::vector<Level> levels_;
-    std::vector<Line> lines_;
+    const Kernels* kernels_ = nullptr;
+    Array<Line> lines_;
     int32_t free_ = -1;  // chain of spare lines
 };
 

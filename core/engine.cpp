@@ -35,7 +35,11 @@ constexpr size_t kLogCapacity = size_t(1) << 17;
 
 Engine::Engine(const std::vector<StartSphere>& start, double time, const World& world,
                const Tuning& tuning)
-    : world_(world), logging_(tuning.log), slice_(tuning.slice) {
+    : world_(world),
+      kernels_(&kernels(tuning.simd)),
+      sort_(tuning.sort),
+      logging_(tuning.log),
+      slice_(tuning.slice) {
     const PlainArithmetic plain;
     const size_t n = start.size();
     const Vec3& p = world_.period;
@@ -48,6 +52,8 @@ Engine::Engine(const std::vector<StartSphere>& start, double time, const World& 
     bool inelastic = world_.restitution < 1;
     for (const Wall& w : world_.walls) inelastic |= w.restitution < 1;
 
+    labels_.resize(n);
+    places_.resize(n);
     spheres_.resize(n);
     bodies_.resize(n);
     events_.resize(n);
@@ -57,6 +63,7 @@ Engine::Engine(const std::vector<StartSphere>& start, double time, const World& 
     if (world_.contact_time > 0) last_touch_.assign(n, -kNever);
     for (size_t i = 0; i < n; ++i) {
         const StartSphere& s = start[i];
+        labels_[i] = places_[i] = int32_t(i);
         spheres_[i] = {s.position, 0, s.velocity, s.radius};
         bodies_[i].mass = s.fixed ? kNever : s.mass;
         bodies_[i].image = s.image;
@@ -71,24 +78,17 @@ Engine::Engine(const std::vector<StartSphere>& start, double time, const World& 
     log_start_ = time;
     log_shift_ = user_;
     choose_shells(tuning);
+    sort_in_memory();
     build_shells();
     predict_all();
 }
 
-Engine::Motion Engine::motion(int i, double t) const {
-    const Sphere& s = spheres_[size_t(i)];
-    const double dt = t - s.t;
-    if (!falls_[size_t(i)]) return {s.x + s.v * dt, s.v};
-    return {s.x + (s.v + world_.gravity * (0.5 * dt)) * dt, s.v + world_.gravity * dt};
-}
-
 // Is this the first physical event that belongs to a new epoch? After a silent epoch it does not:
 // it is best solved from the anchors as they are.
-bool Engine::epoch_over(const Entry& entry) const {
-    const Event& event = events_[size_t(entry.id)];
-    if (epoch_events_ == 0 || (event.t < clock_.epoch && !busy_epoch())) return false;
-    if (!Calendar::live(entry, event) || event.partner <= kEscape) return false;
-    return event.partner < 0 || events_[size_t(event.partner)].count == event.partner_count;
+bool Engine::epoch_over(const Calendar::Due& due) const {
+    if (epoch_events_ == 0 || (due.t < clock_.epoch && !busy_epoch())) return false;
+    const Event& event = events_[size_t(due.id)];
+    return event.partner > kEscape && !stale(event);
 }
 
 Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
@@ -106,32 +106,31 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
             user_ = std::max(user_, now_);
             return Stop::slice;
         }
-        const Entry* top = calendar_.top(events_, limit);
-        if (top == nullptr) {
+        Calendar::Due due;
+        if (!calendar_.next(pending(), limit, due)) {
             if (until == kNever) return Stop::idle;
             user_ = asked_ = std::max(user_, limit);
             asked_time_ = until;
             return Stop::time;
         }
-        const Entry entry = *top;
-        const Event& event = events_[size_t(entry.id)];
-        if (epoch_over(entry)) {
-            begin_epoch(entry.t);
+        if (epoch_over(due)) {
+            begin_epoch(due.t);
             limit = clock_.offset(until);
             continue;
         }
         calendar_.pop();
-        if (!Calendar::live(entry, event)) continue;
-        now_ = entry.t;
+        now_ = due.t;
+        if (now_ > focused_until_) focus();
+        const Event& event = events_[size_t(due.id)];
         if (event.partner == kEscape) {
-            escape(entry.id);
+            escape(due.id);
             continue;
         }
-        if (event.partner >= 0 && events_[size_t(event.partner)].count != event.partner_count) {
-            predict(entry.id);  // its partner has been hit by somebody else
+        if (stale(event)) {
+            predict(due.id);  // its partner has been hit by somebody else
             continue;
         }
-        execute(entry.id);
+        execute(due.id);
         if (collapse_.i == kNone && collisions_ < last_collision &&
             collisions_ + wall_collisions_ < last_event && log_.size() < full)
             continue;
@@ -144,7 +143,8 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
     }
 }
 
-StartSphere Engine::sphere(int i) const {
+StartSphere Engine::sphere(int number) const {
+    const int i = places_[size_t(number)];
     const Motion at = motion(i, user_);
     const Body& body = bodies_[size_t(i)];
     StartSphere s;
@@ -164,13 +164,15 @@ double Engine::max_overlap() const {
     double deepest = deepest_;
     for (size_t i = 0; shells_on_ && i < size(); ++i) {
         const Motion at = motion(int(i), user_);
-        for (const int32_t j : rows_.of(int(i))) {
-            if (j < int32_t(i)) continue;
-            if (bodies_[i].fixed() && bodies_[size_t(j)].fixed()) continue;
-            const double sigma = spheres_[i].r + spheres_[size_t(j)].r;
-            const Vec3 d = at.x - motion(j, user_).x;
-            const double r = norm(d - whole_boxes(d) * world_.period);
-            deepest = std::max(deepest, (sigma - r) / sigma);
+        for (const Row& row : rows_.of(int(i))) {
+            for (const int32_t j : row.ids()) {
+                if (j < int32_t(i)) continue;
+                if (bodies_[i].fixed() && bodies_[size_t(j)].fixed()) continue;
+                const double sigma = spheres_[i].r + spheres_[size_t(j)].r;
+                const Vec3 d = at.x - motion(j, user_).x;
+                const double r = norm(d - whole_boxes(d) * world_.period);
+                deepest = std::max(deepest, (sigma - r) / sigma);
+            }
         }
     }
     return deepest;
@@ -185,9 +187,9 @@ std::vector<Record> Engine::take_log(double& start) {
 
 size_t Engine::bytes() const {
     const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-    return of(spheres_) + of(bodies_) + of(events_) + of(falls_) + of(fresh_) + of(last_touch_) +
-           of(watches_) + of(shells_) + of(mark_) + rows_.bytes() + cells_.bytes() +
-           calendar_.bytes();
+    return of(labels_) + of(places_) + of(spheres_) + of(bodies_) + of(events_) + of(images_) +
+           of(falls_) + of(fresh_) + of(last_touch_) + of(watches_) + of(glances_) +
+           rows_.bytes() + cells_.bytes() + calendar_.bytes();
 }
 
 void Engine::check() const {
@@ -200,16 +202,34 @@ void Engine::check() const {
         demand(spheres_[i].t <= now_, "an anchor lies in the future");
         if (!shells_on_) continue;
         const Motion at = motion(int(i), now_);
-        const double margin = shells_[i].reach - spheres_[i].r;
-        demand(e.t <= now_ || margin >= kEndless * margin_ ||  // about to be remade, or never
-                   cells_.distance2(at.x, shells_[i].centre) <= margin * margin * (1 + 1e-9),
+        const int widening = rows_.line(int(i)).margin;
+        const double room = margin(widening);
+        demand(e.t <= now_ || widening >= kEndless ||  // about to be remade, or never
+                   cells_.distance2(at.x, shell(int(i)).centre) <= room * room * (1 + 1e-9),
                "a sphere has left its shell unseen");
-        std::vector<int32_t> found;
-        cells_.search(shells_[i], shells_, found);
-        demand(found.size() == rows_.size(int(i)) + 1, "a row misses a neighbour");
-        for (const int32_t j : rows_.of(int(i))) {
-            const auto row = rows_.of(j);
-            demand(std::count(row.begin(), row.end(), int32_t(i)) == 1, "rows are not symmetric");
+        const Shell own = shell(int(i));
+        Found found;
+        cells_.search(own, [this](int32_t j) { return shell(j); }, found);
+        for (const int32_t j : found.ids()) {
+            const Shell other = shell(j);
+            const double near = own.reach + other.reach;
+            if (j == int32_t(i) || cells_.distance2(own.centre, other.centre) >= near * near)
+                continue;
+            bool known = false;
+            for (const Row& row : rows_.of(int(i)))
+                known |= std::count(row.id, row.id + row.n, j) > 0;
+            demand(known, "a row misses a neighbour");
+        }
+        for (const Row& row : rows_.of(int(i))) {
+            for (const int32_t j : row.ids()) {
+                size_t times = 0;
+                for (const Row& other : rows_.of(j))
+                    times += size_t(std::count(other.id, other.id + other.n, int32_t(i)));
+                demand(times == 1, "rows are not symmetric");
+                Next next;
+                consider(int(i), j, next);
+                demand(next.t >= std::min(e.t, events_[size_t(j)].t), "a collision is missed");
+            }
         }
     }
 }

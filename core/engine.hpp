@@ -6,13 +6,16 @@
 // execute.cpp   what an event does
 #pragma once
 
+#include <bit>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "calendar.hpp"
 #include "cells.hpp"
 #include "clock.hpp"
+#include "glance.hpp"
 #include "neighbours.hpp"
 #include "rules.hpp"
 #include "spheres.hpp"
@@ -56,9 +59,11 @@ struct Tuning {         // bookkeeping only: no bit of a trajectory depends on i
     double cell = 0;    // width of the smallest cells; 0 = chosen from the shells
     bool log = true;
     double slice = 0.05;  // seconds of work after which `advance` returns
+    std::string simd;     // instruction set; "" = the best there is
+    bool sort = true;     // neighbours in space become neighbours in memory
 };
 
-constexpr double kEndless = 0x1p60;  // margins: a shell wider than positions are resolved
+constexpr int kEndless = 60;  // doublings: such a shell is wider than positions are resolved
 
 // How one sphere moves as seen from another, from time `from` on.
 struct Relative {
@@ -81,7 +86,7 @@ public:
     double withheld() const { return withheld_.value(); }
     const Collapse& collapse() const { return collapse_; }
     double max_overlap() const;
-    StartSphere sphere(int i) const;  // at time()
+    StartSphere sphere(int number) const;  // at time()
     size_t bytes() const;
 
     // All events since the last call; `start` is the time their offsets count from.
@@ -97,42 +102,61 @@ private:
     struct Motion {
         Vec3 x, v;
     };
+    struct Next {  // an event that may be a sphere's next
+        double t = kNever;
+        int32_t partner = kNone;
+        Image m;  // of the partner, relative to the anchors
+    };
 
     // setup.cpp
     void choose_shells(const Tuning& tuning);
     void choose_epoch(double time);
     void build_shells();
-    bool build_shells_at(double margin);
+    bool build_shells_once();
     void predict_all();
     void begin_epoch(double t);
     void settle(int i);
+    bool sort_in_memory();
 
     // engine.cpp
     Motion motion(int i, double t) const;
-    bool epoch_over(const Entry& entry) const;
+    bool epoch_over(const Calendar::Due& due) const;
+    bool stale(const Event& event) const {
+        return event.partner >= 0 && events_[size_t(event.partner)].count != event.partner_count;
+    }
     bool busy_epoch() const {
         return epoch_events_ >= 64 * int64_t(size()) && clock_.epoch > clock_.shortest;
     }
     Vec3 acceleration(int i) const { return falls_[size_t(i)] ? world_.gravity : Vec3{}; }
     Vec3 whole_boxes(const Vec3& x) const { return nearest(x * inverse_period_); }
+    Pending pending() const { return {events_.data(), labels_.data(), size()}; }
 
     // predict.cpp
     void predict(int i);
     void find_event(int i);
-    void predict_walls(int i, Event& best) const;
-    template <bool kGravity, bool kImages>
-    void predict_pairs(int i, Event& best) const;
-    void consider_pair(int i, int32_t j, const Vec3& r, const Vec3& v, const Vec3& a, Image m,
-                       double sigma, double from, Event& best) const;
-    bool precedes(int i, const Event& p, const Event& q) const;
+    void predict_walls(int i, Next& best) const;
+    void predict_pairs(int i, const Vec3& here, double leaves, Next& best) const;
+    void consider(int i, int32_t j, Next& best) const;
+    void consider_free(int i, int32_t j, Next& best) const;
+    bool just_met(int i, int32_t j, Image m) const;
+    void consider_image(int i, int32_t j, const Relative& rel, Image m, Next& best) const;
+    bool precedes(int i, const Next& p, const Next& q) const;
     Relative relative(int i, int j) const;
-    double escape_time(int i) const;
+    double escape_time(int i, const Motion& at) const;
+
+    // shells.cpp
     void escape(int i);
-    bool crowded(int i) const;
-    double least_margin(int i) const {
-        return spheres_[size_t(i)].r > giant_ ? margin_ : least_margin_;
-    }
     void make_shell(int i);
+    bool crowded(int i) const;
+    int least_widening(int i) const {
+        return spheres_[size_t(i)].r > giant_ ? 0 : least_widening_;
+    }
+    double margin(int widening) const;
+    Shell shell(int i) const;
+    void place_shell(int i, const Vec3& centre, int widening);
+    void exchange(int i);
+    void focus();
+    Glance glance(int i, const Vec3& here, double t) const;
 
     // execute.cpp
     void execute(int i);
@@ -158,27 +182,36 @@ private:
     double asked_ = kNever, asked_time_ = 0;  // offset of the last `until`, and it to the bit
     int64_t epoch_events_ = 0;
 
-    std::vector<Sphere> spheres_;
-    std::vector<Body> bodies_;
-    std::vector<Event> events_;
-    std::vector<uint8_t> falls_;      // gravity acts on it: neither fixed nor resting
-    std::vector<uint8_t> fresh_;      // its anchor is its last event, not the start of an epoch
-    std::vector<double> last_touch_;  // TC model only
-    std::vector<Watch> watches_;      // inelastic runs only
+    // One entry per sphere, in an order of the engine's own: see sort_in_memory.
+    Array<int32_t> labels_;  // the sphere's number outside
+    Array<int32_t> places_;  // where the sphere of that number is
+    Array<Sphere> spheres_;
+    Array<Body> bodies_;
+    Array<Event> events_;
+    Array<Image> images_;  // of the events' partners, where a box is so small that it matters
+    Array<uint8_t> falls_;          // gravity acts on it: neither fixed nor resting
+    Array<uint8_t> fresh_;      // its anchor is its last event, not the start of an epoch
+    Array<double> last_touch_;  // TC model only
+    Array<Watch> watches_;      // inelastic runs only
 
-    std::vector<Shell> shells_;
-    double margin_ = 0;              // that most shells have
-    double widest_margin_ = 0;       // that any shell has had
-    double least_margin_ = 0;        // that a crowded one may shrink to
+    const Kernels* kernels_;
+    bool glancing_ = false;  // one image, no gravity: pairs are looked through at a glance
+    Lens lens_;
+    double focused_until_ = 0;  // glances are too old after that
+    Array<Glance> glances_;
+
+    bool several_images_ = false;    // of a neighbour may be met
+    double margin_ = 0;              // of most shells
+    int widest_ = 0;                 // any shell has been doubled so often
+    int most_widening_ = 0;          // so often a lonely sphere's may be
+    int least_widening_ = 0;         // so often a crowded one may be: a negative number
     double common_ = 0, giant_ = 0;  // radius the cells are made for; above which one is a giant
-    double most_margin_ = 0;         // that a lonely sphere's shell may grow to
     double cell_ = 0;                // width of the smallest cells
+    bool sort_ = true;
     Rows rows_;
     Cells cells_;
     Calendar calendar_;
-    std::vector<int32_t> found_, gone_;
-    std::vector<uint32_t> mark_;
-    uint32_t stamp_ = 0;
+    Found found_;
 
     int64_t collisions_ = 0, wall_collisions_ = 0;
     Sum dissipated_, withheld_;
@@ -190,6 +223,60 @@ private:
     double log_shift_ = 0;  // offset of log_start_ in this epoch
     std::vector<Record> log_;
 };
+
+// What is done several times for each event, and must not cost a call.
+
+inline Engine::Motion Engine::motion(int i, double t) const {
+    const Sphere& s = spheres_[size_t(i)];
+    const double dt = t - s.t;
+    if (!falls_[size_t(i)]) return {s.x + s.v * dt, s.v};
+    return {s.x + (s.v + world_.gravity * (0.5 * dt)) * dt, s.v + world_.gravity * dt};
+}
+
+// r(t) of a flight anchored at time zero.
+inline Vec3 flown(const Vec3& x, const Vec3& v, const Vec3& a, double t) {
+    return x + (v + a * (0.5 * t)) * t;
+}
+
+// From the later anchor on both fly freely: what is predicted depends on nothing else.
+inline Relative Engine::relative(int i, int j) const {
+    const Sphere &p = spheres_[size_t(i)], &q = spheres_[size_t(j)];
+    const double from = p.t > q.t ? p.t : q.t, dp = from - p.t, dq = from - q.t;
+    if (!gravity_) return {(p.x + p.v * dp) - (q.x + q.v * dq), p.v - q.v, {}, from};
+    const Vec3 pa = acceleration(i), qa = acceleration(j);
+    return {flown(p.x, p.v, pa, dp) - flown(q.x, q.v, qa, dq), (p.v + pa * dp) - (q.v + qa * dq),
+            pa - qa, from};
+}
+
+inline double Engine::margin(int widening) const {
+    return margin_ * std::bit_cast<double>(uint64_t(1023 + widening) << 52);  // 2^widening
+}
+
+inline Shell Engine::shell(int i) const {
+    const Event& e = events_[size_t(i)];
+    return {{e.shell[0], e.shell[1], e.shell[2]},
+            spheres_[size_t(i)].r + margin(rows_.line(i).margin)};
+}
+
+inline Glance Engine::glance(int i, const Vec3& here, double t) const {
+    const Sphere& s = spheres_[size_t(i)];
+    const double scale = lens_.time / lens_.length;
+    Glance g;
+    g.x[0] = steps(here.x, lens_.inverse_period.x);
+    g.x[1] = steps(here.y, lens_.inverse_period.y);
+    g.x[2] = steps(here.z, lens_.inverse_period.z);
+    g.t = int32_t(uint32_t(int64_t(t * lens_.ticks_per_time)));
+    g.v[0] = float(s.v.x * scale);
+    g.v[1] = float(s.v.y * scale);
+    g.v[2] = float(s.v.z * scale);
+    g.r = float(s.r / lens_.length);
+    const float v2 = g.v[0] * g.v[0] + g.v[1] * g.v[1] + g.v[2] * g.v[2];
+    const double far = std::abs(here.x) + std::abs(here.y) + std::abs(here.z);
+    const bool clear = v2 < lens_.fastest2 && s.r < lens_.largest && s.r > lens_.smallest &&
+                       far < lens_.farthest && rows_.line(i).margin <= 4;
+    if (!clear) g.v[0] = std::numeric_limits<float>::quiet_NaN();
+    return g;
+}
 
 // The deepest pair nearer than sigma (1 - 1e-12), fixed pairs aside; i = kNone if there is none.
 struct Overlap {

@@ -12,9 +12,11 @@ void Engine::execute(int i) {
         refresh(i);
         return;
     }
-    const Image m = e.m;
-    const int32_t lo = std::min(i, e.partner), hi = std::max(i, e.partner);
-    collide(lo, hi, i == lo ? m : Image{} - m, e.t);
+    // In the order of their labels, so that no bit depends on who is where in memory.
+    const bool first = labels_[size_t(i)] < labels_[size_t(e.partner)];
+    const int32_t lo = first ? i : e.partner, hi = first ? e.partner : i;
+    const Image m = several_images_ ? images_[size_t(i)] : Image{};
+    collide(lo, hi, first ? m : Image{} - m, e.t);
     ++collisions_;
     refresh(lo);
     refresh(hi);
@@ -31,8 +33,9 @@ void Engine::collide(int32_t i, int32_t j, Image m, double t) {
     // Not the difference of the two places: that loses digits far from the origin.
     const Relative rel = relative(i, j);
     const double dt = t - rel.from;
-    const Vec3 r = rel.r - shift(m, world_.period) + (rel.v + rel.a * (0.5 * dt)) * dt;
-    const Vec3 v = rel.v + rel.a * dt;
+    const Vec3 path = (rel.v + rel.a * (0.5 * dt)) * dt, v = rel.v + rel.a * dt;
+    if (periodic_ && !several_images_) m = to_image(whole_boxes(rel.r + path));  // they touch
+    const Vec3 r = rel.r - shift(m, world_.period) + path;
     Body &a = bodies_[size_t(i)], &b = bodies_[size_t(j)];
     const double ri = spheres_[size_t(i)].r, rj = spheres_[size_t(j)].r;
     const double distance = norm(r), speed = std::min(0.0, dot(r, v) / distance);
@@ -63,7 +66,7 @@ void Engine::collide(int32_t i, int32_t j, Image m, double t) {
 
     const Image unwrapped = m + a.image - b.image;
     a.last = j, b.last = i;
-    a.last_image = unwrapped, b.last_image = Image{} - unwrapped;
+    a.last_image = nearby(unwrapped), b.last_image = nearby(Image{} - unwrapped);
     const Vec3 impulse = change * mu;
     log(t, i, j, impulse);
     anchor(i, p.x, p.v + change * share_a, t);
@@ -115,7 +118,7 @@ void Engine::hit_wall(int32_t i, int k, double t) {
     log(t, i, rests ? kCameToRest - k : wall_code(k), impulse);
     anchor(i, at.x, v, t);
     if (rests) {
-        body.rests_on = k;
+        body.rests_on = int16_t(k);
         falls_[size_t(i)] = 0;
     } else {
         wake(i, impulse, t);
@@ -131,6 +134,7 @@ void Engine::anchor(int32_t i, const Vec3& x, const Vec3& v, double t) {
     s.t = t;
     wrap(i);
     fresh_[size_t(i)] = 1;
+    if (glancing_) glances_[size_t(i)] = glance(i, s.x, t);
     ++events_[size_t(i)].count;
     if (!last_touch_.empty()) last_touch_[size_t(i)] = t;
 }
@@ -162,12 +166,13 @@ void Engine::watch(int32_t i, int32_t j, double t, double speed) {
         if (k < 0 || bodies_[size_t(k)].fixed()) continue;
         if (watches_[size_t(k)].collapsed(t, speed, spheres_[size_t(k)].r, size()) &&
             collapse_.i == kNone)
-            collapse_ = {clock_.time(t), i, j};
+            collapse_ = {clock_.time(t), labels_[size_t(i)], j >= 0 ? labels_[size_t(j)] : j};
     }
 }
 
 void Engine::log(double t, int32_t i, int32_t j, const Vec3& impulse) {
-    if (logging_) log_.push_back({t - log_shift_, i, j, impulse});
+    if (!logging_) return;
+    log_.push_back({t - log_shift_, labels_[size_t(i)], j >= 0 ? labels_[size_t(j)] : j, impulse});
 }
 
 }  // namespace carom

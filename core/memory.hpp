@@ -1,14 +1,18 @@
 // Memory: what limits the speed and the size of a large run.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <new>
 #include <vector>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
 
 namespace carom {
 
-// Asks for a cache line that will be needed in a moment. A row's spheres, the cells around a shell
-// and the rows of new neighbours are asked for all at once, instead of waiting for each in turn:
-// 1.2 times faster at 256 000 spheres, the same at 4 000.
+// Asks for a cache line that will be needed in a moment.
 inline void fetch(const void* line) {
 #if defined(__GNUC__)
     __builtin_prefetch(line);
@@ -17,9 +21,43 @@ inline void fetch(const void* line) {
 #endif
 }
 
+// Large arrays start on a page of 2 MiB and ask for pages of that size, so that the processor finds
+// its way among 300 MB with few looks into the page table.
+template <class T>
+struct LargePages {
+    using value_type = T;
+    static constexpr size_t kPage = size_t(1) << 21;
+
+    LargePages() = default;
+    template <class U>
+    LargePages(const LargePages<U>&) {}
+    template <class U>
+    bool operator==(const LargePages<U>&) const {
+        return true;
+    }
+    static size_t alignment(size_t bytes) {
+        return bytes >= 2 * kPage ? kPage : std::max<size_t>(alignof(T), 64);
+    }
+    T* allocate(size_t n) {
+        const size_t bytes = n * sizeof(T);
+        void* p = ::operator new(bytes, std::align_val_t(alignment(bytes)));
+#if defined(__linux__)
+        if (bytes >= 2 * kPage) madvise(p, bytes, MADV_HUGEPAGE);
+#endif
+        return static_cast<T*>(p);
+    }
+    void deallocate(T* p, size_t n) {
+        ::operator delete(p, std::align_val_t(alignment(n * sizeof(T))));
+    }
+};
+
+// An array with one entry per sphere.
+template <class T>
+using Array = std::vector<T, LargePages<T>>;
+
 // Grows a large array by an eighth instead of doubling it.
 template <class T>
-void grow(std::vector<T>& v) {
+void grow(Array<T>& v) {
     if (v.size() == v.capacity()) v.reserve(v.size() + v.size() / 8 + 64);
     v.emplace_back();
 }

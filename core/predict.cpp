@@ -1,16 +1,9 @@
-// The next event of a sphere, and who its neighbours are.
+// The next event of a sphere.
 #include "engine.hpp"
 
 namespace carom {
 
 namespace {
-
-// r(t) and v(t) of a flight anchored at time zero.
-inline Vec3 flown(const Vec3& x, const Vec3& v, const Vec3& a, double t) {
-    return x + (v + a * (0.5 * t)) * t;
-}
-
-constexpr size_t kLonely = 10, kCrowded = 30;  // neighbours
 
 // The whole boxes m for which |r - m L| can be at most `reach`, along one axis.
 struct Span {
@@ -26,103 +19,120 @@ Span images_within(double r, double reach, double inverse_period) {
 
 // Order of simultaneous events of sphere i: (i, j, image) with i < j, as for events of different
 // spheres in the calendar.
-bool Engine::precedes(int i, const Event& p, const Event& q) const {
+bool Engine::precedes(int i, const Next& p, const Next& q) const {
     if (p.t != q.t) return p.t < q.t;
     if (q.partner == kNone || q.partner == kEscape) return true;
-    const int32_t pa = p.partner >= 0 ? std::min(i, p.partner) : i,
-                  qa = q.partner >= 0 ? std::min(i, q.partner) : i,
-                  pb = p.partner >= 0 ? std::max(i, p.partner) : p.partner,
-                  qb = q.partner >= 0 ? std::max(i, q.partner) : q.partner;
+    const auto label = [this](int32_t k) { return k >= 0 ? labels_[size_t(k)] : k; };
+    const int32_t own = labels_[size_t(i)], with_p = label(p.partner), with_q = label(q.partner);
+    const int32_t pa = with_p >= 0 ? std::min(own, with_p) : own,
+                  qa = with_q >= 0 ? std::min(own, with_q) : own,
+                  pb = with_p >= 0 ? std::max(own, with_p) : with_p,
+                  qb = with_q >= 0 ? std::max(own, with_q) : with_q;
     if (pa != qa) return pa < qa;
     if (pb != qb) return pb < qb;
-    const bool turned = i > p.partner;  // the image as the lower of the two sees it
+    const bool turned = own > with_p;  // the image as the lower of the two sees it
     const Image a = turned ? q.m : p.m, b = turned ? p.m : q.m;
     if (a.x != b.x) return a.x < b.x;
     if (a.y != b.y) return a.y < b.y;
     return a.z < b.z;
 }
 
+// Two that have just collided cannot meet again in that image before either has had another event,
+// unless something presses them together. Without this, rounding repeats collisions of no speed for
+// ever.
+bool Engine::just_met(int i, int32_t j, Image m) const {
+    const Body &p = bodies_[size_t(i)], &q = bodies_[size_t(j)];
+    return p.last == j && q.last == i && p.last_image == nearby(m + p.image - q.image);
+}
+
 // One pair in one image. r, v, a: relative motion at time `from`, the later of the two anchors.
-void Engine::consider_pair(int i, int32_t j, const Vec3& r, const Vec3& v, const Vec3& a, Image m,
-                           double sigma, double from, Event& best) const {
+void Engine::consider_image(int i, int32_t j, const Relative& rel, Image m, Next& best) const {
+    const auto& [r, v, a, from] = rel;
+    const double sigma = spheres_[size_t(i)].r + spheres_[size_t(j)].r;
     double wait = kNever;
     const bool free = norm2(a) == 0;
     if (free) {
         wait = contact_time(r, v, sigma);
         if (wait == kNever) return;
     }
-    // Two that have just collided cannot meet again in that image before either has had another
-    // event, unless something presses them together. Without this, rounding repeats collisions of
-    // no speed for ever.
-    const Body &p = bodies_[size_t(i)], &q = bodies_[size_t(j)];
-    const bool just_met = p.last == j && q.last == i && p.last_image == m + p.image - q.image;
+    const bool again = just_met(i, j, m);
     if (free) {
-        if (just_met) return;
+        if (again) return;
     } else {
         const bool here = fresh_[size_t(i)] && fresh_[size_t(j)];  // still where they met
-        wait = Approach(r, v, a, sigma, 1).first(just_met && here);
+        wait = Approach(r, v, a, sigma, 1).first(again && here);
         if (wait == kNever) return;
     }
-    Event e = best;
-    e.t = from + wait;
-    e.partner = j;
-    e.m = m;
+    const Next e{from + wait, j, m};
     if (precedes(i, e, best)) best = e;
 }
 
-// From the later anchor on both fly freely: what is predicted depends on nothing else.
-inline Relative relative_free(const Sphere& p, const Sphere& q) {
-    const double from = p.t > q.t ? p.t : q.t;
-    return {(p.x + p.v * (from - p.t)) - (q.x + q.v * (from - q.t)), p.v - q.v, {}, from};
+// One pair in free flight where only one image can be met: the usual case, and the same as below.
+void Engine::consider_free(int i, int32_t j, Next& best) const {
+    Relative rel = relative(i, j);
+    Vec3 m;
+    if (periodic_) {
+        m = nearest((rel.r + rel.v * (now_ - rel.from)) * inverse_period_);
+        rel.r -= m * world_.period;
+    }
+    const double wait =
+        contact_time(rel.r, rel.v, spheres_[size_t(i)].r + spheres_[size_t(j)].r);
+    if (wait == kNever || (bodies_[size_t(i)].last == j && just_met(i, j, to_image(m)))) return;
+    const Next e{rel.from + wait, j, {}};
+    if (precedes(i, e, best)) best = e;
 }
 
-Relative Engine::relative(int i, int j) const {
-    const Sphere &p = spheres_[size_t(i)], &q = spheres_[size_t(j)];
-    if (!gravity_) return relative_free(p, q);
-    const Vec3 pa = acceleration(i), qa = acceleration(j);
-    const double from = p.t > q.t ? p.t : q.t, dp = from - p.t, dq = from - q.t;
-    return {flown(p.x, p.v, pa, dp) - flown(q.x, q.v, qa, dq), (p.v + pa * dp) - (q.v + qa * dq),
-            pa - qa, from};
-}
-
-template <bool kGravity, bool kImages>
-void Engine::predict_pairs(int i, Event& best) const {
-    const Sphere& p = spheres_[size_t(i)];
-    for (const int32_t j : rows_.of(i)) fetch(&spheres_[size_t(j)]);
-    for (const int32_t j : rows_.of(i)) {
-        const Sphere& q = spheres_[size_t(j)];
-        Relative rel = kGravity ? relative(i, j) : relative_free(p, q);
-        auto& [r, v, a, from] = rel;
-        const double sigma = p.r + q.r;
-        Vec3 m;  // image, chosen from where both are now
-        if (periodic_) {
-            const Vec3 here = kGravity ? flown(r, v, a, now_ - from) : r + v * (now_ - from);
-            if constexpr (kImages) {
-                const double reach = sigma + 4 * widest_margin_;
-                if (reach >= half_period_) {
-                    const Span x = images_within(here.x, reach, inverse_period_.x),
-                               y = images_within(here.y, reach, inverse_period_.y),
-                               z = images_within(here.z, reach, inverse_period_.z);
-                    for (int32_t mx = x.lo; mx <= x.hi; ++mx)
-                        for (int32_t my = y.lo; my <= y.hi; ++my)
-                            for (int32_t mz = z.lo; mz <= z.hi; ++mz) {
-                                const Image each{mx, my, mz};
-                                consider_pair(i, j, r - shift(each, world_.period), v, a, each,
-                                              sigma, from, best);
-                            }
-                    continue;
-                }
-            }
-            m = nearest(here * inverse_period_);
-            r -= m * world_.period;
+// One pair, in all images in which it can meet.
+void Engine::consider(int i, int32_t j, Next& best) const {
+    Relative rel = relative(i, j);
+    if (!periodic_) return consider_image(i, j, rel, {}, best);
+    // The image is chosen from where both are now.
+    const Vec3 here = flown(rel.r, rel.v, rel.a, now_ - rel.from);
+    if (several_images_) {
+        const double reach =
+            spheres_[size_t(i)].r + spheres_[size_t(j)].r + 4 * margin(widest_);
+        if (reach >= half_period_) {
+            const Span x = images_within(here.x, reach, inverse_period_.x),
+                       y = images_within(here.y, reach, inverse_period_.y),
+                       z = images_within(here.z, reach, inverse_period_.z);
+            const Vec3 r = rel.r;
+            for (int32_t mx = x.lo; mx <= x.hi; ++mx)
+                for (int32_t my = y.lo; my <= y.hi; ++my)
+                    for (int32_t mz = z.lo; mz <= z.hi; ++mz) {
+                        const Image m{mx, my, mz};
+                        rel.r = r - shift(m, world_.period);
+                        consider_image(i, j, rel, m, best);
+                    }
+            return;
         }
-        // Most pairs end here: they part.
-        if (!kGravity && dot(r, v) >= 0) continue;
-        consider_pair(i, j, r, v, a, to_image(m), sigma, from, best);
+    }
+    const Vec3 m = nearest(here * inverse_period_);
+    rel.r -= m * world_.period;
+    consider_image(i, j, rel, to_image(m), best);
+}
+
+// The neighbours are looked through at a glance, and only who may be first is solved exactly. If
+// another may come before even that one, all are.
+void Engine::predict_pairs(int i, const Vec3& here, double leaves, Next& best) const {
+    if (!glancing_) {
+        for (const Row& row : rows_.of(i)) {
+            for (const int32_t j : row.ids()) fetch(&spheres_[size_t(j)]);
+            for (const int32_t j : row.ids()) consider(i, j, best);
+        }
+        return;
+    }
+    const Glance me = glance(i, here, now_);
+    for (const Row& row : rows_.of(i)) {
+        const Guess guess = kernels_->first_met(
+            lens_, glances_.data(), me, i, reinterpret_cast<const int32_t*>(&row), row.n);
+        if (guess.slot == 0 || now_ + guess.first * lens_.time > std::min(leaves, best.t)) continue;
+        consider_free(i, row.id[guess.slot - 1], best);
+        if (now_ + guess.second * lens_.time > std::min(leaves, best.t)) continue;
+        for (const int32_t j : row.ids()) consider_free(i, j, best);
     }
 }
 
-void Engine::predict_walls(int i, Event& best) const {
+void Engine::predict_walls(int i, Next& best) const {
     const Sphere& s = spheres_[size_t(i)];
     const Body& body = bodies_[size_t(i)];
     if (body.fixed()) return;
@@ -131,138 +141,52 @@ void Engine::predict_walls(int i, Event& best) const {
         if (k == body.rests_on) continue;
         const double wait = wall_time(world_.walls[size_t(k)], s, a, body.last == wall_code(k));
         if (wait == kNever) continue;
-        Event e = best;
-        e.t = s.t + wait;
-        e.partner = wall_code(k);
-        e.m = {};
+        const Next e{s.t + wait, wall_code(k), {}};
         if (precedes(i, e, best)) best = e;
     }
 }
 
 // How long the sphere stays in its shell: exact without gravity, a safe lower bound with it.
-double Engine::escape_time(int i) const {
-    const Sphere& s = spheres_[size_t(i)];
-    const Motion at = motion(i, now_);
-    Vec3 d = at.x - shells_[size_t(i)].centre;
+double Engine::escape_time(int i, const Motion& at) const {
+    const int widening = rows_.line(i).margin;
+    if (widening >= kEndless) return kNever;
+    const Event& e = events_[size_t(i)];
+    Vec3 d = at.x - Vec3{e.shell[0], e.shell[1], e.shell[2]};
     d -= nearest(d * inverse_period_) * world_.period;
-    double margin = shells_[size_t(i)].reach - s.r;
-    if (margin >= kEndless * margin_) return kNever;
     // A hair early: two that touch just as they leave touching shells must know each other by then.
-    margin *= 1 - 1e-9;
-    const double v2 = norm2(at.v), room = margin * margin - norm2(d);
+    const double room = margin(widening) * (1 - 1e-9);
+    const double v2 = norm2(at.v), left2 = room * room - norm2(d);
     if (falls_[size_t(i)] && gravity_) {
-        const double left = margin - norm(d);
+        const double left = room - norm(d);
         if (left <= 0) return now_;
         const double g = norm(world_.gravity);
         return now_ + 2 * left / (std::sqrt(v2) + std::sqrt(v2 + 2 * g * left));
     }
     if (v2 == 0) return kNever;
-    if (room <= 0) return now_;
-    const double b = dot(d, at.v), q = std::sqrt(b * b + v2 * room);
-    return now_ + (b > 0 ? room / (b + q) : (q - b) / v2);
+    if (left2 <= 0) return now_;
+    const double b = dot(d, at.v), q = std::sqrt(b * b + v2 * left2);
+    return now_ + (b > 0 ? left2 / (b + q) : (q - b) / v2);
 }
 
 void Engine::predict(int i) {
     find_event(i);
-    calendar_.schedule(i, events_[size_t(i)]);
+    calendar_.schedule(i, pending());
 }
 
 void Engine::find_event(int i) {
-    Event best = events_[size_t(i)];
-    best.t = kNever;
-    best.partner = kNone;
-    best.m = {};
-    predict_walls(i, best);
+    Next best;
+    if (!world_.walls.empty()) predict_walls(i, best);
     if (shells_on_) {
-        const bool images = half_period_ < kNever;
-        if (gravity_)
-            images ? predict_pairs<true, true>(i, best) : predict_pairs<true, false>(i, best);
-        else
-            images ? predict_pairs<false, true>(i, best) : predict_pairs<false, false>(i, best);
-        const double leaves = escape_time(i);
-        if (leaves <= best.t && leaves < kNever) {  // of two at one time, this one first
-            best.t = leaves;
-            best.partner = kEscape;
-        }
+        const Motion at = motion(i, now_);
+        const double leaves = escape_time(i, at);
+        predict_pairs(i, at.x, leaves, best);
+        if (leaves <= best.t && leaves < kNever) best = {leaves, kEscape, {}};  // of two this first
     }
-    best.partner_count = best.partner >= 0 ? events_[size_t(best.partner)].count : 0;
-    events_[size_t(i)] = best;
-}
-
-// The sphere leaves its shell: make a new one around it.
-void Engine::escape(int i) {
-    const Shell& shell = shells_[size_t(i)];
-    const double margin = shell.reach - spheres_[size_t(i)].r;
-    if (gravity_ && falls_[size_t(i)]) {
-        // Only a bound was due. Keep the shell while the sphere is well inside.
-        if (cells_.distance2(motion(i, now_).x, shell.centre) < 0.5 * margin * margin)
-            return predict(i);
-    }
-    make_shell(i);
-    predict(i);
-}
-
-bool Engine::crowded(int i) const {
-    return rows_.size(i) > kCrowded &&
-           shells_[size_t(i)].reach - spheres_[size_t(i)].r > 1.01 * least_margin(i);
-}
-
-// A shell around where the sphere is now, and with it its row of neighbours. A sphere that flies
-// alone gets a wider shell each time, so that an expanding cloud costs ever less.
-void Engine::make_shell(int i) {
-    Shell& shell = shells_[size_t(i)];
-    const double r = spheres_[size_t(i)].r, margin = shell.reach - r;
-    double wish = margin;
-    if (crowded(i))
-        wish = std::max(0.5 * margin, least_margin(i));
-    else if (rows_.size(i) * 4 < kLonely && margin < most_margin_)
-        wish = std::min(2 * margin, most_margin_);
-
-    cells_.remove(i, shell);
-    const Motion at = motion(i, now_);
-    const double speed = norm(at.v);
-    for (;;) {
-        // Ahead of the sphere, where it will be (a fourth fewer shells at packing fraction 0.25;
-        // in a dense fluid, where it soon turns round, none).
-        const double ahead = speed > 0 && margin_ > 0.5 * r ? 0.6 * wish / speed : 0;
-        shell.centre = at.x + at.v * ahead;
-        shell.reach = r + wish;
-        found_.clear();
-        cells_.search(shell, shells_, found_);
-        if (wish <= margin || found_.size() <= kLonely) break;
-        wish = margin;
-    }
-    widest_margin_ = std::max(widest_margin_, wish);
-    cells_.add(i, shell);
-
-    // Rows are symmetric: whoever joins or leaves this row gains or loses i in its own.
-    if (stamp_ > UINT32_MAX - 2) {
-        std::fill(mark_.begin(), mark_.end(), 0);
-        stamp_ = 0;
-    }
-    stamp_ += 2;
-    for (const int32_t j : found_) mark_[size_t(j)] = stamp_;
-    const auto old = rows_.of(i);
-    std::vector<int32_t>& gone = gone_;
-    gone.clear();
-    for (const int32_t j : old) {
-        if (mark_[size_t(j)] == stamp_)
-            mark_[size_t(j)] = stamp_ + 1;  // in both
-        else
-            gone.push_back(j);
-    }
-    for (const int32_t j : gone) fetch(rows_.line(j));
-    for (const int32_t j : found_)
-        if (mark_[size_t(j)] == stamp_) fetch(rows_.line(j));
-    for (const int32_t j : gone) {
-        rows_.remove(i, j);
-        rows_.remove(j, i);
-    }
-    for (const int32_t j : found_) {
-        if (mark_[size_t(j)] == stamp_ + 1) continue;
-        rows_.add(i, j);
-        rows_.add(j, i);
-    }
+    Event& e = events_[size_t(i)];
+    e.t = best.t;
+    e.partner = best.partner;
+    e.partner_count = best.partner >= 0 ? events_[size_t(best.partner)].count : 0;
+    if (several_images_) images_[size_t(i)] = best.m;
 }
 
 }  // namespace carom

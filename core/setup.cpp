@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kSpherical = 4.18879020478639098;  // 4 pi / 3
 
-double median_radius(const std::vector<Sphere>& spheres) {
+double median_radius(const Array<Sphere>& spheres) {
     std::vector<double> r;
     r.reserve(spheres.size());
     for (const Sphere& s : spheres) r.push_back(s.r);
@@ -20,7 +20,7 @@ double median_radius(const std::vector<Sphere>& spheres) {
 }
 
 // Extent of the spheres along each axis, or the period where there is one.
-Vec3 extent(const std::vector<Sphere>& spheres, const Vec3& period) {
+Vec3 extent(const Array<Sphere>& spheres, const Vec3& period) {
     Vec3 lo{kNever, kNever, kNever}, hi{-kNever, -kNever, -kNever};
     for (const Sphere& s : spheres) {
         lo = {std::min(lo.x, s.x.x - s.r), std::min(lo.y, s.x.y - s.r),
@@ -52,19 +52,26 @@ void Engine::choose_shells(const Tuning& tuning) {
     const double shell = std::cbrt(kNeighbours * free / (kSpherical * double(size())));
     margin_ = std::clamp(0.5 * shell - r, 0.1 * r, 16 * r);
     if (tuning.margin > 0) margin_ = tuning.margin;
-    most_margin_ = kNever;
+    double most = kNever;
     if (periodic_) {
         // One image of a neighbour is enough while no other can come within reach.
         const double single = 0.249 * (half_period_ - 2 * r);
         if (single >= 0.1 * r) margin_ = std::min(margin_, single);
         margin_ = std::min(margin_, 0.25 * half_period_);
-        most_margin_ = std::max(margin_, 0.249 * (half_period_ - 2 * largest));
+        most = std::max(margin_, 0.249 * (half_period_ - 2 * largest));
+        several_images_ = 2 * largest + 4 * most >= half_period_;
     }
+    most_widening_ = 0;
+    while (most_widening_ < kEndless && 2 * margin(most_widening_) <= most) ++most_widening_;
     // All on one level if the sizes allow.
     common_ = largest <= 2 * r ? largest : r;
     cell_ = tuning.cell > 0 ? tuning.cell : 2 * (common_ + margin_) * (1 + 1e-9);
     giant_ = 2 * r;
-    least_margin_ = std::min(margin_, 0.1 * r);
+    least_widening_ = 0;
+    while (margin(least_widening_ - 1) >= 0.1 * r) --least_widening_;
+    glancing_ = !gravity_ && !several_images_;
+    if (glancing_) glances_.resize(size());
+    if (several_images_) images_.resize(size());
 }
 
 // An epoch lasts some dozens of collisions of a sphere. Its exact length does not matter; that it
@@ -96,39 +103,37 @@ void Engine::settle(int i) {
         const double gap = std::abs(dot(w.normal, s.x) - w.offset - s.r);
         if (gap > 1e-6 * s.r || gap >= nearest_gap) continue;
         nearest_gap = gap;
-        bodies_[size_t(i)].rests_on = int32_t(k);
+        bodies_[size_t(i)].rests_on = int16_t(k);
         falls_[size_t(i)] = 0;
     }
 }
 
 void Engine::build_shells() {
     if (!shells_on_) return;
-    while (!build_shells_at(margin_)) {
+    while (!build_shells_once()) {
         margin_ *= 0.5;
+        ++least_widening_;
         cell_ = 2 * (common_ + margin_) * (1 + 1e-9);
     }
 }
 
 // False if the spheres stand too close together for shells this wide: the mean density says
 // nothing of a dense cluster with one sphere far away.
-bool Engine::build_shells_at(double margin) {
+bool Engine::build_shells_once() {
     const size_t n = size();
-    shells_.resize(n);
-    mark_.assign(n, 0);
-    stamp_ = 0;
     rows_.reset(n);
-    cells_.reset(cell_, world_.period, extent(spheres_, world_.period), n);
-    widest_margin_ = margin;
+    cells_.reset(cell_, world_.period, extent(spheres_, world_.period), n, *kernels_);
+    widest_ = 0;
     size_t pairs = 0;
     for (size_t i = 0; i < n; ++i) {
-        shells_[i] = {motion(int(i), now_).x, spheres_[i].r + margin};
-        found_.clear();
-        cells_.search(shells_[i], shells_, found_);
-        cells_.add(int(i), shells_[i]);
-        pairs += found_.size();
+        place_shell(int(i), motion(int(i), now_).x, 0);
+        const Shell s = shell(int(i));
+        cells_.search(s, [this](int32_t j) { return shell(j); }, found_);
+        cells_.add(int(i), s);
+        pairs += found_.n;
         // 24 neighbours each, and one more pair for a lone giant, which may have all: no crowd.
-        if (i >= 256 && pairs > 13 * i && margin > 2 * least_margin_) return false;
-        for (const int32_t j : found_) {
+        if (i >= 256 && pairs > 13 * i && least_widening_ < 0) return false;
+        for (const int32_t j : found_.ids()) {
             rows_.add(int(i), j);
             rows_.add(j, int32_t(i));
         }
@@ -137,8 +142,9 @@ bool Engine::build_shells_at(double margin) {
 }
 
 void Engine::predict_all() {
+    focus();
     for (size_t i = 0; i < size(); ++i) find_event(int(i));
-    calendar_.reset(events_, now_);
+    calendar_.reset(pending(), now_);
 }
 
 // Flies every sphere to the start of the epoch in which offset t falls, anchors it there and
@@ -171,22 +177,19 @@ void Engine::begin_epoch(double t) {
     now_ = std::max(0.0, now_ - step);
     if (epoch_events_ < 4 * int64_t(size())) clock_.epoch *= 2;
     epoch_events_ = 0;
+    if (sort_in_memory()) build_shells();
     predict_all();
 }
 
 namespace {
 
-constexpr uint32_t kCheckpointVersion = 1;
+constexpr uint32_t kCheckpointVersion = 2;
 
 class Writer {
 public:
     template <class T>
     void one(const T& x) {
         bytes.append(reinterpret_cast<const char*>(&x), sizeof x);
-    }
-    template <class T>
-    void many(const std::vector<T>& v) {
-        bytes.append(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(T));
     }
     std::string bytes;
 };
@@ -196,18 +199,11 @@ public:
     explicit Reader(const std::string& b) : bytes_(b) {}
     template <class T>
     void one(T& x) {
-        take(&x, sizeof x);
-    }
-    template <class T>
-    void many(std::vector<T>& v) {
-        take(v.data(), v.size() * sizeof(T));
+        std::memcpy(&x, bytes_.data() + at_, sizeof x);
+        at_ += sizeof x;
     }
 
 private:
-    void take(void* to, size_t n) {
-        if (n > 0) std::memcpy(to, bytes_.data() + at_, n);  // `to` is null if empty
-        at_ += n;
-    }
     const std::string& bytes_;
     size_t at_ = 0;
 };
@@ -230,13 +226,18 @@ std::string Engine::checkpoint() const {
     w.one(withheld_);
     w.one(deepest_);
     w.one(collapse_);
-    w.many(spheres_);
-    w.many(bodies_);
-    w.many(falls_);
-    w.many(fresh_);
-    w.many(last_touch_);
-    w.many(watches_);
-    for (const Event& e : events_) w.one(e.count);
+    for (const int32_t place : places_) {  // in the order of the outside
+        const auto i = size_t(place);
+        Body body = bodies_[i];
+        if (body.last >= 0) body.last = labels_[size_t(body.last)];
+        w.one(spheres_[i]);
+        w.one(body);
+        w.one(falls_[i]);
+        w.one(fresh_[i]);
+        w.one(events_[i].count);
+        if (!last_touch_.empty()) w.one(last_touch_[i]);
+        if (!watches_.empty()) w.one(watches_[i]);
+    }
     return w.bytes;
 }
 
@@ -262,13 +263,17 @@ void Engine::restore(const std::string& bytes) {
     r.one(withheld_);
     r.one(deepest_);
     r.one(collapse_);
-    r.many(spheres_);
-    r.many(bodies_);
-    r.many(falls_);
-    r.many(fresh_);
-    r.many(last_touch_);
-    r.many(watches_);
-    for (Event& e : events_) r.one(e.count);
+    for (const int32_t place : places_) {
+        const auto i = size_t(place);
+        r.one(spheres_[i]);
+        r.one(bodies_[i]);
+        if (bodies_[i].last >= 0) bodies_[i].last = places_[size_t(bodies_[i].last)];
+        r.one(falls_[i]);
+        r.one(fresh_[i]);
+        r.one(events_[i].count);
+        if (!last_touch_.empty()) r.one(last_touch_[i]);
+        if (!watches_.empty()) r.one(watches_[i]);
+    }
     log_.clear();
     log_start_ = time();
     log_shift_ = user_;
@@ -279,21 +284,19 @@ void Engine::restore(const std::string& bytes) {
 Overlap first_overlap(const std::vector<StartSphere>& spheres, const Vec3& period) {
     Overlap worst;
     if (spheres.empty()) return worst;
-    std::vector<Sphere> packed;
+    Array<Sphere> packed;
     for (const StartSphere& s : spheres) packed.push_back({s.position, 0, s.velocity, s.radius});
     const Vec3 inverse{period.x > 0 ? 1 / period.x : 0, period.y > 0 ? 1 / period.y : 0,
                        period.z > 0 ? 1 / period.z : 0};
     Cells cells;
     cells.reset(2 * median_radius(packed) * (1 + 1e-9), period, extent(packed, period),
-                spheres.size());
-    std::vector<Shell> shells(spheres.size());
-    std::vector<int32_t> found;
+                spheres.size(), kernels());
+    Found found;
+    const auto shell = [&](int32_t i) { return Shell{packed[size_t(i)].x, packed[size_t(i)].r}; };
     for (size_t i = 0; i < spheres.size(); ++i) {
-        shells[i] = {packed[i].x, packed[i].r};
-        found.clear();
-        cells.search(shells[i], shells, found);
-        cells.add(int(i), shells[i]);
-        for (const int32_t j : found) {
+        cells.search(shell(int32_t(i)), shell, found);
+        cells.add(int(i), shell(int32_t(i)));
+        for (const int32_t j : found.ids()) {
             if (spheres[i].fixed && spheres[size_t(j)].fixed) continue;
             const Vec3 d = packed[i].x - packed[size_t(j)].x;
             const double r = norm(d - nearest(d * inverse) * period);

@@ -48,17 +48,24 @@ struct alignas(64) Sphere {
 };
 static_assert(sizeof(Sphere) == 64);
 
+// An image as far as it can matter to two spheres that have not met anybody else since.
+struct NearImage {
+    int16_t x = 0, y = 0, z = 0;
+    bool operator==(const NearImage&) const = default;
+};
+inline NearImage nearby(Image m) { return {int16_t(m.x), int16_t(m.y), int16_t(m.z)}; }
+
 // The rest of the stored state, touched once per collision.
 struct Body {
-    double mass = 1;        // infinite for a fixed sphere
-    int32_t last = kNone;   // partner of the last event ...
-    Image last_image;       // ... and its image, counted in unwrapped positions
-    Image image;            // whole boxes travelled
-    int32_t rests_on = -1;  // wall it rests on, or -1
+    double mass = 1;         // infinite for a fixed sphere
+    int32_t last = kNone;    // partner of the last event ...
+    NearImage last_image;    // ... and its image, counted in unwrapped positions
+    int16_t rests_on = -1;   // wall it rests on, or -1
+    Image image;             // whole boxes travelled
 
     bool fixed() const { return mass > 1e300; }
 };
-static_assert(sizeof(Body) == 40);
+static_assert(sizeof(Body) == 32);
 
 // The sphere's next event, as predicted.
 struct Event {
@@ -66,7 +73,7 @@ struct Event {
     int32_t partner = kNone;
     uint32_t partner_count = 0;  // of the partner when predicted: differs later = stale
     uint32_t count = 0;          // impulses this sphere has received
-    Image m;                     // image of the partner, relative to the anchors
+    float shell[3] = {0, 0, 0};  // centre of the shell in which its neighbours are known
 };
 static_assert(sizeof(Event) == 32);
 

@@ -38,6 +38,11 @@ inline double nearest(double x) {
     constexpr double magic = 6755399441055744.0;
     return (x + magic) - magic;
 }
+// The same for the next whole number below.
+inline double floored(double x) {
+    const double n = nearest(x);
+    return n > x ? n - 1 : n;
+}
 inline Vec3 nearest(const Vec3& a) { return {nearest(a.x), nearest(a.y), nearest(a.z)}; }
 
 }  // namespace carom

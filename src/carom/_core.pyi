@@ -51,6 +51,8 @@ class Engine:
         cell: float = 0.0,
         log: bool = True,
         slice: float = 0.05,
+        simd: str = "",
+        sort: bool = True,
     ) -> None: ...
     def advance(self, until: float, max_collisions: int, max_events: int) -> int:
         """Runs until a time or a count; see Stop."""
@@ -108,6 +110,14 @@ class Engine:
     @property
     def collapse(self) -> tuple[float, int, int] | None:
         """(time, i, j) of an inelastic collapse, or None."""
+
+def simd_levels() -> list[str]:
+    """Instruction sets that this machine can run, slowest first."""
+
+def simd() -> str:
+    """
+    The instruction set in use; the environment variable CAROM_SIMD chooses another.
+    """
 
 def first_overlap(
     position: Annotated[

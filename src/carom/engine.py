@@ -102,8 +102,9 @@ class FastEngine:
     """The engine in C++: calendar queue, neighbour lists, exact contact times.
 
     Cost per collision does not grow with the number of spheres. `log=False` keeps no event
-    records. `margin`, `cell` and `slice_seconds` are bookkeeping for tests: the trajectory's bits
-    do not depend on them. Any thread may call it: a call waits for the slice in hand.
+    records. `margin`, `cell`, `slice_seconds`, `simd` (the instruction set) and `sort` (neighbours
+    in space become neighbours in memory) are bookkeeping for tests: the trajectory's bits do not
+    depend on them. Any thread may call it: a call waits for the slice in hand.
     """
 
     def __init__(
@@ -115,6 +116,8 @@ class FastEngine:
         margin: float = 0.0,
         cell: float = 0.0,
         slice_seconds: float = 0.05,
+        simd: str = "",
+        sort: bool = True,
     ) -> None:
         self._start = state.copy()
         for name in UNCHANGING:
@@ -149,6 +152,8 @@ class FastEngine:
             cell=cell,
             log=log,
             slice=slice_seconds,
+            simd=simd,
+            sort=sort,
         )
 
     @property

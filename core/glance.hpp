@@ -1,0 +1,53 @@
+// A sphere at a glance: half a cache line that says roughly where it is and where it goes.
+//
+// Whether two spheres can meet before some moment is decided from glances, many pairs at once, with
+// room for their errors; only the pair that may be next is solved exactly (contact.hpp). So no bit
+// of a trajectory depends on how glances are compared: with which instructions, in which order.
+#pragma once
+
+#include <cstdint>
+
+#include "vec3.hpp"
+
+namespace carom {
+
+// Positions are whole numbers of which 2^32 fill the period of an axis: their differences wrap
+// around to the nearest image by themselves, and cost no digits in a large box. Times are whole
+// numbers too, of which 2^28 fill an epoch.
+struct alignas(32) Glance {
+    int32_t x[3];  // where it was at time t
+    int32_t t;
+    float v[3];  // not a number: solve every pair with this sphere exactly
+    float r;
+};
+static_assert(sizeof(Glance) == 32);
+
+// In what units glances are. Lengths and times are scaled by powers of two so that typical numbers
+// are near one: a gas may be in metres or in nanometres.
+struct Lens {
+    Vec3 inverse_period;    // an open axis has a period too, wider than any two neighbours are apart
+    float unit[3];          // length of one step of Glance::x
+    float tick;             // time of one step of Glance::t
+    float blur;             // added to radii: more than all errors of a distance
+    float still;            // b^2 below still * v^2: parting, or not sure
+    float fastest2;         // faster or further or in size beyond these: solve exactly
+    double smallest, largest, farthest;
+    double length, time;    // what the unit of Glance::r and the unit of the bounds are
+    double ticks_per_time;  // 1 / (tick * time)
+};
+
+// Steps from the centre of the period, wrapped around.
+inline int32_t steps(double x, double inverse_period) {
+    const double boxes = x * inverse_period;
+    return int32_t(uint32_t(int64_t((boxes - nearest(boxes)) * 0x1p32)));
+}
+
+// Who of a row of neighbours may be met first, and before when nobody else is. Times in units of
+// Lens::time from the moment of `me`.
+struct Guess {
+    int32_t slot;  // 1 ... 31, or 0 if nobody can be met
+    float first;   // not before this,
+    float second;  // and any other not before this
+};
+
+}  // namespace carom

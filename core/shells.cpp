@@ -1,0 +1,141 @@
+// Who is near whom: shells around spheres, their rows of neighbours, and the glances by which these
+// are looked through.
+#include <limits>
+#include <span>
+
+#include "engine.hpp"
+
+namespace carom {
+
+namespace {
+
+constexpr size_t kLonely = 10, kCrowded = 30;  // neighbours
+
+}  // namespace
+
+// The centre is rounded to single precision: what is stored is the centre.
+void Engine::place_shell(int i, const Vec3& centre, int widening) {
+    Event& e = events_[size_t(i)];
+    e.shell[0] = float(centre.x);
+    e.shell[1] = float(centre.y);
+    e.shell[2] = float(centre.z);
+    const double far =
+        std::max(std::abs(centre.x), std::max(std::abs(centre.y), std::abs(centre.z)));
+    while (widening < kEndless && margin(widening) < far * 0x1p-20) ++widening;  // rounding is less
+    rows_.line(i).margin = int16_t(widening);
+    widest_ = std::max(widest_, widening);
+}
+
+// The sphere leaves its shell: make a new one around it.
+void Engine::escape(int i) {
+    if (gravity_ && falls_[size_t(i)]) {
+        // Only a bound was due. Keep the shell while the sphere is well inside.
+        const double room = margin(rows_.line(i).margin);
+        if (cells_.distance2(motion(i, now_).x, shell(i).centre) < 0.5 * room * room)
+            return predict(i);
+    }
+    make_shell(i);
+    predict(i);
+}
+
+bool Engine::crowded(int i) const {
+    return rows_.size(i) > kCrowded && rows_.line(i).margin > least_widening(i);
+}
+
+// A shell around where the sphere is now, and with it its row of neighbours. A sphere that flies
+// alone gets a wider shell each time, so that an expanding cloud costs ever less.
+void Engine::make_shell(int i) {
+    const int widening = rows_.line(i).margin;
+    int wish = widening;
+    if (crowded(i))
+        --wish;
+    else if (rows_.size(i) * 4 < kLonely && widening < most_widening_)
+        ++wish;
+
+    cells_.remove(i, shell(i));
+    const Motion at = motion(i, now_);
+    const double speed = norm(at.v);
+    for (;;) {
+        // Ahead of the sphere, where it will be (a fourth fewer shells at packing fraction 0.25;
+        // in a dense fluid, where it soon turns round, none).
+        const double ahead =
+            speed > 0 && margin_ > 0.5 * spheres_[size_t(i)].r ? 0.6 * margin(wish) / speed : 0;
+        place_shell(i, at.x + at.v * ahead, wish);
+        cells_.search(shell(i), [this](int32_t j) { return shell(j); }, found_);
+        if (wish <= widening || found_.n <= kLonely) break;
+        wish = widening;
+    }
+    cells_.add(i, shell(i));
+    exchange(i);
+    if (glancing_) glances_[size_t(i)] = glance(i, at.x, now_);
+}
+
+// The row becomes what was found. Rows are symmetric: whoever joins or leaves this row gains or
+// loses i in its own.
+void Engine::exchange(int i) {
+    const std::span<const int32_t> now = found_.ids();
+    const Row& old = rows_.line(i);
+    if (old.n >= 0 && now.size() <= Row::kPlaces) {
+        Difference d = kernels_->difference(reinterpret_cast<const int32_t*>(&old), old.n,
+                                            now.data(), int(now.size()));
+        for (uint32_t left = d.gone; left != 0; left &= left - 1)
+            fetch(&rows_.line(old.id[std::countr_zero(left)]));
+        for (uint32_t left = d.fresh; left != 0; left &= left - 1)
+            fetch(&rows_.line(now[size_t(std::countr_zero(left))]));
+        for (; d.gone != 0; d.gone &= d.gone - 1)
+            rows_.remove(old.id[std::countr_zero(d.gone)], i);
+        for (; d.fresh != 0; d.fresh &= d.fresh - 1)
+            rows_.add(now[size_t(std::countr_zero(d.fresh))], i);
+    } else {
+        std::vector<int32_t> before, after(now.begin(), now.end());
+        for (const Row& row : rows_.of(i)) before.insert(before.end(), row.id, row.id + row.n);
+        std::sort(before.begin(), before.end());
+        std::sort(after.begin(), after.end());
+        for (const int32_t j : before)
+            if (!std::binary_search(after.begin(), after.end(), j)) rows_.remove(j, i);
+        for (const int32_t j : after)
+            if (!std::binary_search(before.begin(), before.end(), j)) rows_.add(j, i);
+    }
+    rows_.assign(i, now);
+}
+
+// Chooses the units of glances for this epoch, and looks at every sphere anew.
+//
+// A distance between neighbours is at most a few cells, so single precision errs by about 2^-22 of
+// a cell; the steps of positions and times err by less, except for a sphere too fast, too large,
+// too small or in too wide a shell: those are marked to be solved exactly.
+void Engine::focus() {
+    if (!glancing_) return;
+    const double epoch = clock_.epoch;
+    double energy = 0;
+    for (const Sphere& s : spheres_) energy += norm2(s.v);
+    const double speed = std::sqrt(energy / double(size()));
+    lens_.length = Clock::power_of_two_above(cell_);
+    lens_.time = speed > 0 ? std::min(Clock::power_of_two_above(cell_ / speed), epoch) : epoch;
+    // An open axis has a period of 4096 cells: no two neighbours that are not marked are further
+    // apart than 300.
+    const Vec3& p = world_.period;
+    const double open = 0x1p12 * cell_;
+    const double period[3] = {p.x > 0 ? p.x : open, p.y > 0 ? p.y : open, p.z > 0 ? p.z : open};
+    lens_.inverse_period = {1 / period[0], 1 / period[1], 1 / period[2]};
+    double widest = 0;
+    for (int a = 0; a < 3; ++a) {
+        const double unit = period[a] * 0x1p-32 / lens_.length;
+        lens_.unit[a] = float(unit);
+        widest = std::max(widest, unit);
+    }
+    lens_.ticks_per_time = 0x1p28 / epoch;
+    lens_.tick = float(0x1p-28 * epoch / lens_.time);
+    lens_.blur = float(0x1p-11 * cell_ / lens_.length + 16 * widest);
+    lens_.still = lens_.blur * lens_.blur;
+    const float fastest = lens_.blur / (32 * lens_.tick);
+    lens_.fastest2 = fastest * fastest;
+    lens_.smallest = cell_ / 1024;
+    lens_.largest = 128 * cell_;
+    lens_.farthest = 0x1p30 * cell_;
+    focused_until_ = now_ + 4 * epoch;
+    for (size_t i = 0; i < size(); ++i)
+        glances_[i] = glance(int(i), motion(int(i), now_).x, now_);
+}
+
+}  // namespace carom

@@ -1,0 +1,120 @@
+// Who is near, in whole numbers: exact, so the same with every instruction set.
+//
+// Included once for each instruction set.
+#include <cstdint>
+
+#include "kernels.hpp"
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+namespace carom::CAROM_SIMD {
+
+using Eight [[gnu::vector_size(32)]] = int32_t;
+using EightPairs [[gnu::vector_size(32)]] = int16_t;
+using SixteenBytes [[gnu::vector_size(16)]] = uint8_t;
+
+[[gnu::always_inline]] inline EightPairs from_bytes(const CellLine::Place* places) {
+    SixteenBytes b;
+    __builtin_memcpy(&b, places, 16);
+    return __builtin_convertvector(b, EightPairs);
+}
+
+[[gnu::always_inline]] inline EightPairs eight_times(int16_t first, int16_t second) {
+    return EightPairs(Eight{} + int32_t(uint32_t(uint16_t(second)) << 16 | uint16_t(first)));
+}
+
+// a.first b.first + a.second b.second
+[[gnu::always_inline]] inline Eight dot(EightPairs a, EightPairs b) {
+#if defined(__AVX2__)
+    return Eight(_mm256_madd_epi16((__m256i)a, (__m256i)b));
+#elif defined(__SSE2__)
+    union {
+        EightPairs all;
+        __m128i half[2];
+    } p{a}, q{b};
+    p.half[0] = _mm_madd_epi16(p.half[0], q.half[0]);
+    p.half[1] = _mm_madd_epi16(p.half[1], q.half[1]);
+    return Eight(p.all);
+#else
+    const Eight a1 = (Eight(a) << 16) >> 16, b1 = (Eight(b) << 16) >> 16;
+    return a1 * b1 + (Eight(a) >> 16) * (Eight(b) >> 16);
+#endif
+}
+
+// The shells of one line whose place is nearer than both reaches: appended to `out`, which has room
+// for eight. x^2 + y^2 + z^2 - r^2 < 0, its terms multiplied two by two. The eighth lane is no
+// shell.
+[[gnu::always_inline]] inline int32_t near_in_line(const CellLine& line, EightPairs from_xy,
+                                                   EightPairs from_zr, int32_t* out) {
+    const EightPairs xy = from_xy - from_bytes(line.xy), zr = from_zr - from_bytes(line.zr),
+                     sign = {1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1};
+    Eight id;
+    __builtin_memcpy(&id, line.id, 32);
+    const Eight inside = (dot(xy, xy) + dot(zr, zr * sign)) & ~id;  // its sign tells
+#if defined(__AVX512VL__) && defined(__AVX512DQ__)
+    const __mmask8 mask = _mm256_movepi32_mask((__m256i)inside) & 0x7f;
+    _mm256_storeu_si256((__m256i*)out, _mm256_maskz_compress_epi32(mask, (__m256i)id));
+    return __builtin_popcount(mask);
+#else
+    int32_t n = 0;  // no branch: whether a shell is near cannot be foreseen
+    for (int k = 0; k < CellLine::kSlots; ++k) {
+        out[n] = line.id[k];
+        n += int32_t(uint32_t(inside[k]) >> 31);
+    }
+    return n;
+#endif
+}
+
+// How many shells are nearer than both reaches; -1 if `out` may not have room for all.
+int32_t near(const CellLine* lines, const CellBlock& block, int32_t* out, int32_t room) {
+    int32_t found = 0;
+    for (int kz = 0; kz < block.z.n; ++kz) {
+        const EightPairs zr = eight_times(block.z.seen[kz], block.minus_reach);
+        for (int ky = 0; ky < block.y.n; ++ky) {
+            const int32_t row = block.z.line[kz] + block.y.line[ky];
+            for (int kx = 0; kx < block.x.n; ++kx) {
+                const EightPairs xy = eight_times(block.x.seen[kx], block.y.seen[ky]);
+                for (int32_t at = row + block.x.line[kx]; at >= 0; at = lines[at].next) {
+                    if (found + 8 > room) return -1;
+                    found += near_in_line(lines[at], xy, zr, out + found);
+                }
+            }
+        }
+    }
+    return found;
+}
+
+// Bit k: is lane k true?
+[[gnu::always_inline]] inline uint32_t mask_of(Eight truth) {
+#if defined(__AVX__)
+    return uint32_t(_mm256_movemask_ps((__m256)truth));
+#else
+    uint32_t mask = 0;
+    for (int k = 0; k < 8; ++k) mask |= uint32_t(truth[k] & 1) << k;
+    return mask;
+#endif
+}
+
+// `row`: 32 numbers, of which the first is not a neighbour's and n follow, then none of `now`.
+Difference difference(const int32_t* row, int n, const int32_t* now, int n_now) {
+    Eight old[4], kept[4] = {};
+    __builtin_memcpy(old, row, sizeof old);
+    old[0][0] = -1;
+    uint32_t fresh = 0;
+    for (int k = 0; k < n_now; ++k) {
+        Eight any = {};
+        for (int l = 0; l < 4; ++l) {
+            const Eight same = old[l] == now[k];
+            kept[l] |= same;
+            any |= same;
+        }
+        fresh |= uint32_t(mask_of(any) == 0) << k;
+    }
+    uint32_t held = 0;
+    for (int l = 0; l < 4; ++l) held |= mask_of(kept[l]) << (8 * l);
+    return {~(held >> 1) & ((uint32_t(1) << n) - 1), fresh};
+}
+
+}  // namespace carom::CAROM_SIMD

@@ -1,0 +1,191 @@
+// Who of a row of neighbours may be met first: several pairs at a time, in single precision.
+//
+// The formula, for one pair (r, v: relative position and velocity; s: contact distance + blur):
+//     b = r.v,  c = r^2 - s^2,  D = b^2 - v^2 c,  t = c / (sqrt(D) - b)   if b < 0 and D > 0
+// The blur makes t a lower bound of the exact time: spheres that are a little larger meet a little
+// earlier, and that outweighs what single precision loses.
+//
+// Included once for each instruction set; CAROM_LANES is how many numbers its registers hold.
+#include <bit>
+#include <cstdint>
+
+#include "../glance.hpp"
+
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+namespace carom::CAROM_SIMD {
+
+constexpr int kLanes = CAROM_LANES;
+using Floats [[gnu::vector_size(4 * kLanes)]] = float;
+using Ints [[gnu::vector_size(4 * kLanes)]] = int32_t;
+using Words [[gnu::vector_size(4 * kLanes)]] = uint32_t;
+using Quad [[gnu::vector_size(16)]] = float;
+
+[[gnu::always_inline]] inline Floats square_root(Floats x) {
+#if defined(__AVX512F__)
+    return (Floats)_mm512_maskz_sqrt_ps(0xffff, (__m512)x);
+#elif defined(__AVX__)
+    return (Floats)_mm256_sqrt_ps((__m256)x);
+#elif defined(__SSE2__)
+    return (Floats)_mm_sqrt_ps((__m128)x);
+#else
+    for (int k = 0; k < kLanes; ++k) x[k] = __builtin_sqrtf(x[k]);
+    return x;
+#endif
+}
+
+template <class T>
+[[gnu::always_inline]] inline Floats same(T x) {
+    return Floats{} + float(x);
+}
+
+// Half a glance of every fourth neighbour, side by side.
+[[gnu::always_inline]] inline Floats gather(const char* base, const int32_t* id, int half) {
+    const auto quad = [&](int k) {
+        return *reinterpret_cast<const Quad*>(base + (int64_t(id[4 * k]) << 5) + 16 * half);
+    };
+#if CAROM_LANES == 4
+    return quad(0);
+#elif CAROM_LANES == 8
+    return (Floats)_mm256_insertf128_ps(_mm256_castps128_ps256(quad(0)), quad(1), 1);
+#else
+    __m512 all = _mm512_castps128_ps512(quad(0));
+    all = _mm512_mask_broadcast_f32x4(all, 0x00f0, quad(1));
+    all = _mm512_mask_broadcast_f32x4(all, 0x0f00, quad(2));
+    return (Floats)_mm512_mask_broadcast_f32x4(all, 0xf000, quad(3));
+#endif
+}
+
+#if CAROM_LANES == 4
+#define CAROM_EACH_QUAD(a, b, c, d) a, b, c, d
+#elif CAROM_LANES == 8
+#define CAROM_EACH_QUAD(a, b, c, d) \
+    a, b, c, d, (a) + 4, (b) + 4, (c) + 4, (d) + 4
+#else
+#define CAROM_EACH_QUAD(a, b, c, d)                                                     \
+    a, b, c, d, (a) + 4, (b) + 4, (c) + 4, (d) + 4, (a) + 8, (b) + 8, (c) + 8, (d) + 8, \
+        (a) + 12, (b) + 12, (c) + 12, (d) + 12
+#endif
+
+// Four rows of four numbers, in each quarter of the registers, become four columns.
+[[gnu::always_inline]] inline void transpose(Floats& a, Floats& b, Floats& c, Floats& d) {
+    constexpr int n = kLanes;
+    const Floats ab = __builtin_shufflevector(a, b, CAROM_EACH_QUAD(0, n, 1, n + 1)),
+                 AB = __builtin_shufflevector(a, b, CAROM_EACH_QUAD(2, n + 2, 3, n + 3)),
+                 cd = __builtin_shufflevector(c, d, CAROM_EACH_QUAD(0, n, 1, n + 1)),
+                 CD = __builtin_shufflevector(c, d, CAROM_EACH_QUAD(2, n + 2, 3, n + 3));
+    a = __builtin_shufflevector(ab, cd, CAROM_EACH_QUAD(0, 1, n, n + 1));
+    b = __builtin_shufflevector(ab, cd, CAROM_EACH_QUAD(2, 3, n + 2, n + 3));
+    c = __builtin_shufflevector(AB, CD, CAROM_EACH_QUAD(0, 1, n, n + 1));
+    d = __builtin_shufflevector(AB, CD, CAROM_EACH_QUAD(2, 3, n + 2, n + 3));
+}
+
+constexpr int32_t kNoTime = 0x7f800000;  // infinity, as the bits of a float
+constexpr int32_t kSlots = 31;           // the last bits of a time give way to its place in the row
+
+// Lower bounds of the contact times with the neighbours in `id`, as bits, which order like the
+// numbers while these are positive; the last five bits say which slot.
+[[gnu::always_inline]] inline Ints bounds(const Lens& lens, const Glance* all, const Glance& me, const int32_t* id,
+                   Ints slot) {
+    const char* base = reinterpret_cast<const char*>(all);
+    Floats x = gather(base, id, 0), y = gather(base, id + 1, 0), z = gather(base, id + 2, 0),
+           t = gather(base, id + 3, 0);
+    transpose(x, y, z, t);
+    Floats vx = gather(base, id, 1), vy = gather(base, id + 1, 1), vz = gather(base, id + 2, 1),
+           r = gather(base, id + 3, 1);
+    transpose(vx, vy, vz, r);
+    const auto apart = [](int32_t mine, Floats theirs) {
+        return __builtin_convertvector(Ints(uint32_t(mine) - Words(theirs)), Floats);
+    };
+    const Floats wait = apart(me.t, t) * lens.tick;  // since their glance
+    x = apart(me.x[0], x) * lens.unit[0] - vx * wait;
+    y = apart(me.x[1], y) * lens.unit[1] - vy * wait;
+    z = apart(me.x[2], z) * lens.unit[2] - vz * wait;
+    vx = me.v[0] - vx;
+    vy = me.v[1] - vy;
+    vz = me.v[2] - vz;
+    const Floats s = r + (me.r + lens.blur);
+    const Floats b = x * vx + y * vy + z * vz;
+    const Floats v2 = vx * vx + vy * vy + vz * vz;
+    const Floats c = x * x + y * y + z * z - s * s;
+    const Floats d = b * b - v2 * c;
+    const Floats zero = {};
+    // Refused if it is certain; what is not a number passes.
+    const Ints touching = (c < zero) & (b * b < v2 * lens.still);
+    const Ints refused = (d < zero) | ((b >= zero) & ~touching);
+    Floats time = c / (square_root(d) - b);
+    time = time >= zero ? time : zero;
+    const Ints bits = (Ints(time) & ~kSlots) | slot;
+    return refused ? Ints{} + kNoTime : bits;
+}
+
+template <class V>
+[[gnu::always_inline]] inline V least(V a, V b) {
+    return a < b ? a : b;
+}
+template <class V>
+[[gnu::always_inline]] inline V most(V a, V b) {
+    return a < b ? b : a;
+}
+
+// The two smallest of what lanes have seen: each its smallest and its second.
+template <class V>
+struct Two {
+    V first, second;
+    Two with(Two o) const {
+        return {least(first, o.first), least(most(first, o.first), least(second, o.second))};
+    }
+};
+
+#define CAROM_PART(part, ...)                                     \
+    Two<decltype(__builtin_shufflevector(part.first, part.first, __VA_ARGS__))> { \
+        __builtin_shufflevector(part.first, part.first, __VA_ARGS__),             \
+            __builtin_shufflevector(part.second, part.second, __VA_ARGS__)        \
+    }
+
+// Folds until one lane is left.
+[[gnu::always_inline]] inline Two<int32_t> of_all_lanes(Two<Ints> all) {
+#if CAROM_LANES == 16
+    const auto eight = CAROM_PART(all, 0, 1, 2, 3, 4, 5, 6, 7)
+                           .with(CAROM_PART(all, 8, 9, 10, 11, 12, 13, 14, 15));
+#else
+    const auto eight = all;
+#endif
+#if CAROM_LANES >= 8
+    const auto four = CAROM_PART(eight, 0, 1, 2, 3).with(CAROM_PART(eight, 4, 5, 6, 7));
+#else
+    const auto four = eight;
+#endif
+    const auto two = four.with(CAROM_PART(four, 2, 3, 0, 1));
+    const auto one = two.with(CAROM_PART(two, 1, 0, 3, 2));
+    return {one.first[0], one.second[0]};
+}
+
+#if CAROM_LANES == 4
+constexpr Ints kEach = {0, 1, 2, 3};
+#elif CAROM_LANES == 8
+constexpr Ints kEach = {0, 1, 2, 3, 4, 5, 6, 7};
+#else
+constexpr Ints kEach = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+#endif
+
+// `row`: 32 numbers, of which the first is not a neighbour's and those after the n-th neighbour
+// name a sphere that cannot be met, such as the searcher itself.
+Guess first_met(const Lens& lens, const Glance* all, const Glance& me, int32_t self,
+                const int32_t* row, int n) {
+    int32_t head[kLanes];
+    head[0] = self;
+    for (int k = 1; k < kLanes; ++k) head[k] = row[k];
+    const Ints none = Ints{} + kNoTime;
+    Two<Ints> lane{kEach == 0 ? none : bounds(lens, all, me, head, kEach), none};
+    for (int k = kLanes; k <= n; k += kLanes)
+        lane = lane.with({bounds(lens, all, me, row + k, kEach + k), none});
+    const Two<int32_t> two = of_all_lanes(lane);
+    if (two.first == kNoTime) return {0, 0, 0};
+    return {two.first & kSlots, std::bit_cast<float>(two.first & ~kSlots),
+            std::bit_cast<float>(two.second & ~kSlots)};
+}
+
+}  // namespace carom::CAROM_SIMD
