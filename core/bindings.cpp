@@ -1,6 +1,7 @@
 // The only file that knows Python.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
@@ -8,6 +9,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <cstring>
+#include <map>
 #include <memory>
 #include <optional>
 #include <tuple>
@@ -72,7 +74,7 @@ auto make_engine(const Vectors& position, const Vectors& velocity, const Numbers
                  const Images& image, const Counts& count, double time, const Three& period,
                  const WallRows& walls, double restitution, double contact_time,
                  const Three& gravity, bool collide, double margin, double cell, bool log,
-                 double slice, const std::string& simd, bool sort) {
+                 double slice, const std::string& simd, bool sort, int grid) {
     std::vector<carom::StartSphere> start = spheres(position, radius, fixed);
     const size_t n = start.size();
     if (velocity.shape(0) != n || mass.shape(0) != n || resting.shape(0) != n ||
@@ -89,7 +91,7 @@ auto make_engine(const Vectors& position, const Vectors& velocity, const Numbers
                              contact_time,  three(gravity),    collide};
     const nb::gil_scoped_release release;
     return std::make_unique<Engine>(start, time, world, 
-                                    carom::Tuning{margin, cell, log, slice, simd, sort});
+                                    carom::Tuning{margin, cell, log, slice, simd, sort, grid});
 }
 
 auto state_of(const Engine& engine) {
@@ -138,7 +140,7 @@ NB_MODULE(_core, m) {
              nb::arg("restitution"), nb::arg("contact_time"), nb::arg("gravity"),
              nb::arg("collide"), nb::arg("margin") = 0.0, nb::arg("cell") = 0.0,
              nb::arg("log") = true, nb::arg("slice") = 0.05, nb::arg("simd") = "",
-             nb::arg("sort") = true)
+             nb::arg("sort") = true, nb::arg("grid") = -1)
         .def(
             "advance",
             [](Engine& e, double until, int64_t max_collisions, int64_t max_events) {
@@ -171,6 +173,17 @@ NB_MODULE(_core, m) {
         .def_prop_ro("wall_collisions", &Engine::wall_collisions, "With walls.")
         .def_prop_ro("dissipated", &Engine::dissipated, "Energy the rules have taken.")
         .def_prop_ro("withheld", &Engine::withheld, "Energy the contact-time cure kept.")
+        .def(
+            "work",
+            [](const Engine& e) {
+                const carom::Work& w = e.work();
+                return std::map<std::string, int64_t>{{"predictions", w.predictions},
+                                                      {"shells", w.shells},
+                                                      {"stale", w.stale},
+                                                      {"exact", w.exact}};
+            },
+            "What it has done: predictions, shells remade or cells crossed, predictions of a\n"
+            "partner hit by another, pairs solved exactly.")
         .def_prop_ro("memory", &Engine::bytes, "Bytes in use.")
         .def_prop_ro(
             "collapse",

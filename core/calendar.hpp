@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "contact.hpp"
@@ -23,6 +24,11 @@ struct Pending {
     const Event* events;
     const int32_t* labels;
     size_t n;
+    bool gridded;
+
+    int32_t partner(const Event& e) const {
+        return gridded && e.t < e.contact ? kEscape : e.partner;
+    }
 };
 
 class Calendar {
@@ -52,6 +58,7 @@ public:
         spare_ = -1;
         few_ = 0;
         heap_.clear();
+        for (Post& post : posts_) post.slot = -1;
         current_ = bucket_of(now);
         for (size_t i = 0; i < p.n; ++i) schedule(int(i), p);
     }
@@ -63,11 +70,13 @@ public:
         if (k <= current_)
             insert(i, p);
         else
-            push(k & mask_, i);
+            post(k & mask_, i);
     }
 
-    // The next event, if one is at or before `limit`.
-    bool next(const Pending& p, double limit, Due& due) {
+    // The next event, if one is at or before `limit`. Each time a bucket is taken in hand, `opened`
+    // is told.
+    template <class Opened>
+    bool next(const Pending& p, double limit, Due& due, const Opened& opened) {
         int64_t walked = 0;
         for (;;) {
             if (first(p, due)) return due.t <= limit;
@@ -81,8 +90,25 @@ public:
             }
             ++current_;
             open(p);
+            opened();
         }
     }
+
+    // Whose events are, or were, in the bucket `later` after the one in hand; and whether it is the
+    // bucket of that event still. For asking memory in time.
+    template <class Visit>
+    void each(int later, const Visit& visit) const {
+        if (later == 0) {
+            for (int k = 0; k < few_; ++k) visit(ids_[k]);
+            return;
+        }
+        for (int64_t at = (current_ + later) & mask_; at >= 0; at = lines_[size_t(at)].next) {
+            const Line& line = lines_[size_t(at)];
+            for (int k = 0; k < line.n; ++k) visit(line.id[k]);
+        }
+    }
+    bool due_in(int later, double t) const { return bucket_of(t) == current_ + later; }
+    const void* line(int later) const { return &lines_[size_t((current_ + later) & mask_)]; }
 
     // Takes the event that `next` has shown off the list.
     void pop() {
@@ -99,12 +125,12 @@ public:
     size_t bytes() const { return lines_.capacity() * sizeof(Line); }
 
 private:
-    static constexpr double kPerBucket = 4;
-    static constexpr int kIds = 14, kFew = 24;
+    static constexpr double kPerBucket = 6;
+    static constexpr int kIds = 14, kFew = 48;
     struct alignas(64) Line {
         int32_t n = 0;
         int32_t next = -1;
-        int32_t id[kIds];
+        int32_t id[kIds] = {};
     };
     struct Entry {
         double t;
@@ -128,9 +154,10 @@ private:
     static Entry entry(int i, const Pending& p) {
         const Event& e = p.events[i];
         const int32_t own = p.labels[i];
-        if (e.partner == kEscape) return {e.t, -1, own, i};
-        if (e.partner < 0) return {e.t, own, e.partner, i};
-        const int32_t other = p.labels[e.partner];
+        const int32_t partner = p.partner(e);
+        if (partner == kEscape) return {e.t, -1, own, i};
+        if (partner < 0) return {e.t, own, partner, i};
+        const int32_t other = p.labels[partner];
         return {e.t, std::min(own, other), std::max(own, other), i};
     }
 
@@ -191,6 +218,21 @@ private:
         return false;
     }
 
+    // Asks for the bucket's line and pushes a little later, when it has come.
+    void post(int64_t slot, int i) {
+        fetch(&lines_[size_t(slot)]);
+        Post& p = posts_[++posted_ % kPosts];
+        if (p.slot >= 0) push(p.slot, p.id);
+        p = {slot, i};
+    }
+    void deliver(int64_t slot) {
+        for (Post& p : posts_) {
+            if (p.slot != slot) continue;
+            push(slot, p.id);
+            p.slot = -1;
+        }
+    }
+
     void push(int64_t slot, int i) {
         Line& head = lines_[size_t(slot)];
         if (head.n < kIds) {
@@ -214,6 +256,7 @@ private:
     // Takes the current bucket in hand; what belongs to a later year goes back.
     void open(const Pending& p) {
         const int64_t slot = current_ & mask_;
+        deliver(slot);
         if (lines_[size_t(slot)].n == 0) return;
         again_.clear();
         for (int64_t c = slot; c >= 0;) {
@@ -242,6 +285,13 @@ private:
     int64_t mask_ = 63, current_ = 0;
     Array<Line> lines_;
     int32_t spare_ = -1;  // chain of spare lines
+    struct Post {
+        int64_t slot = -1;
+        int32_t id = 0;
+    };
+    static constexpr size_t kPosts = 16;
+    Post posts_[kPosts];
+    size_t posted_ = 0;
     int few_ = 0, at_ = 0;
     double times_[kFew];
     int32_t ids_[kFew];

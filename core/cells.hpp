@@ -77,6 +77,23 @@ public:
             if (level.population > 0) search(level, s, shell_of, out);
     }
 
+    // Asks for the lines that a search around x will look into.
+    void fetch_around(const Vec3& x) const {
+        const Level& l = levels_.front();
+        const Vec3 u = in_cells(x, l);
+        const auto three = [](double v, int64_t n, int64_t out[3]) {
+            for (int k = 0; k < 3; ++k) out[k] = wrap(floored(v) + k - 1, n);
+        };
+        int64_t a[3], b[3], c[3];
+        three(u.x, l.n[0], a);
+        three(u.y, l.n[1], b);
+        three(u.z, l.n[2], c);
+        for (const int64_t z : c)
+            for (const int64_t y : b)
+                for (const int64_t xs : a)
+                    fetch(&lines_[size_t(l.first + (z * l.n[1] + y) * l.n[0] + xs)]);
+    }
+
     double distance2(const Vec3& a, const Vec3& b) const {
         Vec3 d = a - b;
         d -= nearest(d * inverse_period_) * period_;
@@ -148,7 +165,7 @@ private:
     }
     static int64_t wrap(double cell, int64_t n) {
         auto c = int64_t(cell);
-        c += c < 0 ? n : 0;
+        c += n & (c >> 63);  // no branch: half of all are negative
         if (c >= 0 && c < n) return c;
         const int64_t r = c % n;
         return r < 0 ? r + n : r;
@@ -207,10 +224,6 @@ private:
     }
 
     void near(const CellBlock& block, Found& out) const {
-        for (int kz = 0; kz < block.z.n; ++kz)
-            for (int ky = 0; ky < block.y.n; ++ky)
-                for (int kx = 0; kx < block.x.n; ++kx)
-                    fetch(&lines_[size_t(block.z.line[kz] + block.y.line[ky] + block.x.line[kx])]);
         for (;;) {
             const int32_t more = kernels_->near(lines_.data(), block, &out.id[out.n],
                                                 int32_t(out.id.size() - out.n));

@@ -78,6 +78,7 @@ Engine::Engine(const std::vector<StartSphere>& start, double time, const World& 
     log_start_ = time;
     log_shift_ = user_;
     choose_shells(tuning);
+    plain_ = glancing_ && world_.restitution == 1 && last_touch_.empty();
     sort_in_memory();
     build_shells();
     predict_all();
@@ -88,7 +89,43 @@ Engine::Engine(const std::vector<StartSphere>& start, double time, const World& 
 bool Engine::epoch_over(const Calendar::Due& due) const {
     if (epoch_events_ == 0 || (due.t < clock_.epoch && !busy_epoch())) return false;
     const Event& event = events_[size_t(due.id)];
-    return event.partner > kEscape && !stale(event);
+    return next_partner(event) > kEscape && !stale(event);
+}
+
+// Asks memory for what the events of the coming buckets will need, each stage for a bucket nearer.
+void Engine::look_ahead() const {
+    if (!far_) return;
+    fetch(calendar_.line(3));
+    calendar_.each(2, [this](int32_t i) { fetch(&events_[size_t(i)]); });
+    const auto fetch_own = [this](int32_t i) {
+        if (gridded_)
+            grid_.fetch_block(grid_.around(Grid::unpack(events_[size_t(i)].cell)));
+        else
+            fetch(&rows_.line(i));
+        fetch(&spheres_[size_t(i)]);
+        fetch(&bodies_[size_t(i)]);
+    };
+    calendar_.each(1, [&](int32_t i) {
+        const Event& e = events_[size_t(i)];
+        if (!calendar_.due_in(1, e.t)) return;
+        fetch_own(i);
+        if (!gridded_ && far_ && e.partner == kEscape)
+            cells_.fetch_around(ahead(motion(i, e.t), spheres_[size_t(i)].r, 0));
+        if (e.partner < 0) return;
+        fetch(&events_[size_t(e.partner)]);
+        if (next_partner(e) != kEscape) fetch_own(e.partner);
+    });
+
+    const auto fetch_neighbours = [this](int32_t i) {
+        each_near(i, [this](int32_t j) { fetch(&glances_[size_t(j)]); });
+    };
+    calendar_.each(0, [&](int32_t i) {
+        const Event& e = events_[size_t(i)];
+        fetch_neighbours(i);
+        if (next_partner(e) >= 0) fetch_neighbours(e.partner);
+        if (gridded_ || e.partner != kEscape) return;
+        each_near(i, [this](int32_t j) { fetch(&rows_.line(j)); });
+    });
 }
 
 Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
@@ -107,7 +144,7 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
             return Stop::slice;
         }
         Calendar::Due due;
-        if (!calendar_.next(pending(), limit, due)) {
+        if (!calendar_.next(pending(), limit, due, [this] { look_ahead(); })) {
             if (until == kNever) return Stop::idle;
             user_ = asked_ = std::max(user_, limit);
             asked_time_ = until;
@@ -122,11 +159,12 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
         now_ = due.t;
         if (now_ > focused_until_) focus();
         const Event& event = events_[size_t(due.id)];
-        if (event.partner == kEscape) {
-            escape(due.id);
+        if (next_partner(event) == kEscape) {
+            gridded_ ? change_cell(due.id) : escape(due.id);
             continue;
         }
         if (stale(event)) {
+            ++work_.stale;
             predict(due.id);  // its partner has been hit by somebody else
             continue;
         }
@@ -164,16 +202,13 @@ double Engine::max_overlap() const {
     double deepest = deepest_;
     for (size_t i = 0; shells_on_ && i < size(); ++i) {
         const Motion at = motion(int(i), user_);
-        for (const Row& row : rows_.of(int(i))) {
-            for (const int32_t j : row.ids()) {
-                if (j < int32_t(i)) continue;
-                if (bodies_[i].fixed() && bodies_[size_t(j)].fixed()) continue;
-                const double sigma = spheres_[i].r + spheres_[size_t(j)].r;
-                const Vec3 d = at.x - motion(j, user_).x;
-                const double r = norm(d - whole_boxes(d) * world_.period);
-                deepest = std::max(deepest, (sigma - r) / sigma);
-            }
-        }
+        each_near(int(i), [&](int32_t j) {
+            if (j < int32_t(i) || (bodies_[i].fixed() && bodies_[size_t(j)].fixed())) return;
+            const double sigma = spheres_[i].r + spheres_[size_t(j)].r;
+            const Vec3 d = at.x - motion(j, user_).x;
+            const double r = norm(d - whole_boxes(d) * world_.period);
+            deepest = std::max(deepest, (sigma - r) / sigma);
+        });
     }
     return deepest;
 }
@@ -190,48 +225,6 @@ size_t Engine::bytes() const {
     return of(labels_) + of(places_) + of(spheres_) + of(bodies_) + of(events_) + of(images_) +
            of(falls_) + of(fresh_) + of(last_touch_) + of(watches_) + of(glances_) +
            rows_.bytes() + cells_.bytes() + calendar_.bytes();
-}
-
-void Engine::check() const {
-    const auto demand = [](bool ok, const char* what) {
-        if (!ok) throw std::logic_error(what);
-    };
-    for (size_t i = 0; i < size(); ++i) {
-        const Event& e = events_[i];
-        demand(e.t >= now_ || e.partner == kNone, "an event lies in the past");
-        demand(spheres_[i].t <= now_, "an anchor lies in the future");
-        if (!shells_on_) continue;
-        const Motion at = motion(int(i), now_);
-        const int widening = rows_.line(int(i)).margin;
-        const double room = margin(widening);
-        demand(e.t <= now_ || widening >= kEndless ||  // about to be remade, or never
-                   cells_.distance2(at.x, shell(int(i)).centre) <= room * room * (1 + 1e-9),
-               "a sphere has left its shell unseen");
-        const Shell own = shell(int(i));
-        Found found;
-        cells_.search(own, [this](int32_t j) { return shell(j); }, found);
-        for (const int32_t j : found.ids()) {
-            const Shell other = shell(j);
-            const double near = own.reach + other.reach;
-            if (j == int32_t(i) || cells_.distance2(own.centre, other.centre) >= near * near)
-                continue;
-            bool known = false;
-            for (const Row& row : rows_.of(int(i)))
-                known |= std::count(row.id, row.id + row.n, j) > 0;
-            demand(known, "a row misses a neighbour");
-        }
-        for (const Row& row : rows_.of(int(i))) {
-            for (const int32_t j : row.ids()) {
-                size_t times = 0;
-                for (const Row& other : rows_.of(j))
-                    times += size_t(std::count(other.id, other.id + other.n, int32_t(i)));
-                demand(times == 1, "rows are not symmetric");
-                Next next;
-                consider(int(i), j, next);
-                demand(next.t >= std::min(e.t, events_[size_t(j)].t), "a collision is missed");
-            }
-        }
-    }
 }
 
 }  // namespace carom

@@ -8,6 +8,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "cells.hpp"
 #include "clock.hpp"
 #include "glance.hpp"
+#include "grid.hpp"
 #include "neighbours.hpp"
 #include "rules.hpp"
 #include "spheres.hpp"
@@ -61,6 +63,12 @@ struct Tuning {         // bookkeeping only: no bit of a trajectory depends on i
     double slice = 0.05;  // seconds of work after which `advance` returns
     std::string simd;     // instruction set; "" = the best there is
     bool sort = true;     // neighbours in space become neighbours in memory
+    int grid = -1;        // 1: a grid if it can be, 0: lists; -1 = chosen from the density
+};
+
+struct Work {  // what the engine has done; bookkeeping only
+    int64_t predictions = 0, shells = 0, stale = 0;
+    mutable int64_t exact = 0;  // pairs solved
 };
 
 constexpr int kEndless = 60;  // doublings: such a shell is wider than positions are resolved
@@ -88,6 +96,7 @@ public:
     double max_overlap() const;
     StartSphere sphere(int number) const;  // at time()
     size_t bytes() const;
+    const Work& work() const { return work_; }
 
     // All events since the last call; `start` is the time their offsets count from.
     std::vector<Record> take_log(double& start);
@@ -108,7 +117,32 @@ private:
         Image m;  // of the partner, relative to the anchors
     };
 
+    struct Look {         // half a prediction
+        double leaves;    // its shell or cell at this time
+        int32_t partner;  // may be met first,
+        double first;     // not before this time,
+        double second;    // and any other not before this
+        void add(const Guess& guess, const int32_t* row, double now, double unit) {
+            const double t1 = now + guess.first * unit, t2 = now + guess.second * unit;
+            if (guess.slot == 0) return;
+            if (t1 < first) {
+                second = std::min(first, t2);
+                first = t1;
+                partner = row[guess.slot];
+            } else {
+                second = std::min(second, t1);
+            }
+        }
+    };
+
+    // check.cpp
+    void check_cell(int i) const;
+    void check_shell(int i) const;
+
     // setup.cpp
+    bool choose_grid(const Tuning& tuning);
+    bool room(Vec3& centre, Vec3& size) const;
+    void build_grid();
     void choose_shells(const Tuning& tuning);
     void choose_epoch(double time);
     void build_shells();
@@ -120,6 +154,7 @@ private:
 
     // engine.cpp
     Motion motion(int i, double t) const;
+    void look_ahead() const;
     bool epoch_over(const Calendar::Due& due) const;
     bool stale(const Event& event) const {
         return event.partner >= 0 && events_[size_t(event.partner)].count != event.partner_count;
@@ -129,15 +164,25 @@ private:
     }
     Vec3 acceleration(int i) const { return falls_[size_t(i)] ? world_.gravity : Vec3{}; }
     Vec3 whole_boxes(const Vec3& x) const { return nearest(x * inverse_period_); }
-    Pending pending() const { return {events_.data(), labels_.data(), size()}; }
+    Pending pending() const { return {events_.data(), labels_.data(), size(), gridded_}; }
+    int32_t next_partner(const Event& e) const { return pending().partner(e); }
 
     // predict.cpp
     void predict(int i);
+    void predict_both(int i, int j);
     void find_event(int i);
+    void refresh(int i);
+    Look look(int i) const;
+    void choose(int i, const Look& look, double& t, int32_t& partner) const;
+    void decide(int i, const Look& look);
+    double free_contact(int i, int32_t j) const;
+    void settle_on(int i, double t, int32_t partner, double leaves);
+    template <class Visit>
+    void each_near(int i, const Visit& visit) const;
+    void look_through(int i, const GridBlock& block, Look& out) const;
+    void change_cell(int i);
     void predict_walls(int i, Next& best) const;
-    void predict_pairs(int i, const Vec3& here, double leaves, Next& best) const;
     void consider(int i, int32_t j, Next& best) const;
-    void consider_free(int i, int32_t j, Next& best) const;
     bool just_met(int i, int32_t j, Image m) const;
     void consider_image(int i, int32_t j, const Relative& rel, Image m, Next& best) const;
     bool precedes(int i, const Next& p, const Next& q) const;
@@ -146,6 +191,7 @@ private:
 
     // shells.cpp
     void escape(int i);
+    Vec3 ahead(const Motion& at, double r, int widening) const;
     void make_shell(int i);
     bool crowded(int i) const;
     int least_widening(int i) const {
@@ -156,12 +202,12 @@ private:
     void place_shell(int i, const Vec3& centre, int widening);
     void exchange(int i);
     void focus();
-    Glance glance(int i, const Vec3& here, double t) const;
 
     // execute.cpp
     void execute(int i);
-    void refresh(int i);
     void collide(int32_t i, int32_t j, Image m, double t);
+    void collide_plain(int32_t i, int32_t j, double t);
+    void meet_deeper(double depth);
     void hit_wall(int32_t i, int k, double t);
     void anchor(int32_t i, const Vec3& x, const Vec3& v, double t);
     void wrap(int32_t i);
@@ -173,6 +219,7 @@ private:
     World world_;
     Vec3 inverse_period_;
     bool gravity_ = false, periodic_ = false;
+    bool plain_ = false;  // free flight, one image, restitution 1
     bool shells_on_ = true;        // neighbours matter at all
     double half_period_ = kNever;  // of the shortest periodic axis
 
@@ -200,6 +247,10 @@ private:
     double focused_until_ = 0;  // glances are too old after that
     Array<Glance> glances_;
 
+    bool gridded_ = false;  // neighbours are found on a grid, not in lists
+    Grid grid_;
+    mutable Found near_;
+
     bool several_images_ = false;    // of a neighbour may be met
     double margin_ = 0;              // of most shells
     int widest_ = 0;                 // any shell has been doubled so often
@@ -208,14 +259,17 @@ private:
     double common_ = 0, giant_ = 0;  // radius the cells are made for; above which one is a giant
     double cell_ = 0;                // width of the smallest cells
     bool sort_ = true;
+    bool far_ = false;  // neighbours are far away in memory: they do not all fit into the cache
     Rows rows_;
     Cells cells_;
     Calendar calendar_;
     Found found_;
 
+    Work work_;
     int64_t collisions_ = 0, wall_collisions_ = 0;
     Sum dissipated_, withheld_;
     double deepest_ = 0;
+    double shallow2_ = 1 + 1e-15;  // no squared distance above this (in contacts) is a deeper one
     Collapse collapse_;
     bool logging_ = true;
     double slice_ = 0.05;
@@ -229,7 +283,7 @@ private:
 inline Engine::Motion Engine::motion(int i, double t) const {
     const Sphere& s = spheres_[size_t(i)];
     const double dt = t - s.t;
-    if (!falls_[size_t(i)]) return {s.x + s.v * dt, s.v};
+    if (!gravity_ || !falls_[size_t(i)]) return {s.x + s.v * dt, s.v};
     return {s.x + (s.v + world_.gravity * (0.5 * dt)) * dt, s.v + world_.gravity * dt};
 }
 
@@ -254,28 +308,47 @@ inline double Engine::margin(int widening) const {
 
 inline Shell Engine::shell(int i) const {
     const Event& e = events_[size_t(i)];
-    return {{e.shell[0], e.shell[1], e.shell[2]},
+    return {{e.shell_x, e.shell_yz[0], e.shell_yz[1]},
             spheres_[size_t(i)].r + margin(rows_.line(i).margin)};
 }
 
-inline Glance Engine::glance(int i, const Vec3& here, double t) const {
+// What changes of a glance: all but the radius, which `focus` gives.
+inline void Engine::refresh(int i) {
     const Sphere& s = spheres_[size_t(i)];
-    const double scale = lens_.time / lens_.length;
-    Glance g;
-    g.x[0] = steps(here.x, lens_.inverse_period.x);
-    g.x[1] = steps(here.y, lens_.inverse_period.y);
-    g.x[2] = steps(here.z, lens_.inverse_period.z);
-    g.t = int32_t(uint32_t(int64_t(t * lens_.ticks_per_time)));
-    g.v[0] = float(s.v.x * scale);
-    g.v[1] = float(s.v.y * scale);
-    g.v[2] = float(s.v.z * scale);
-    g.r = float(s.r / lens_.length);
-    const float v2 = g.v[0] * g.v[0] + g.v[1] * g.v[1] + g.v[2] * g.v[2];
-    const double far = std::abs(here.x) + std::abs(here.y) + std::abs(here.z);
-    const bool clear = v2 < lens_.fastest2 && s.r < lens_.largest && s.r > lens_.smallest &&
-                       far < lens_.farthest && rows_.line(i).margin <= 4;
-    if (!clear) g.v[0] = std::numeric_limits<float>::quiet_NaN();
-    return g;
+    const Vec3 here = motion(i, now_).x;
+    const double scale = lens_.scale;
+    Glance& g = glances_[size_t(i)];
+    const float vx = float(s.v.x * scale), vy = float(s.v.y * scale), vz = float(s.v.z * scale);
+    bool clear = vx * vx + vy * vy + vz * vz < lens_.fastest2;
+    if (!gridded_) {
+        const double far = std::abs(here.x) + std::abs(here.y) + std::abs(here.z);
+        clear = clear && far < lens_.farthest && rows_.line(i).margin <= 4;
+    }
+    using Four [[gnu::vector_size(16)]] = int32_t;
+    using FourFloats [[gnu::vector_size(16)]] = float;
+    const Four place{steps(here.x, lens_.inverse_period.x), steps(here.y, lens_.inverse_period.y),
+                     steps(here.z, lens_.inverse_period.z),
+                     int32_t(uint32_t(int64_t(now_ * lens_.ticks_per_time)))};
+    const FourFloats flight{clear ? vx : std::numeric_limits<float>::quiet_NaN(), vy, vz, g.r};
+    std::memcpy(g.x, &place, sizeof place);  // at once, because it is about to be read at once
+    std::memcpy(g.v, &flight, sizeof flight);
+}
+
+
+template <class Visit>
+void Engine::each_near(int i, const Visit& visit) const {
+    if (!gridded_) {
+        for (const Row& row : rows_.of(i))
+            for (const int32_t j : row.ids()) visit(j);
+        return;
+    }
+    const GridBlock block = grid_.around(Grid::unpack(events_[size_t(i)].cell));
+    int32_t n = -1;
+    while ((n = kernels_->collect(grid_.cells(), block, near_.id.data(),
+                                  int32_t(near_.id.size()))) < 0)
+        near_.id.resize(2 * near_.id.size());
+    for (int32_t k = 0; k < n; ++k)
+        if (near_.id[size_t(k)] != i) visit(near_.id[size_t(k)]);
 }
 
 // The deepest pair nearer than sigma (1 - 1e-12), fixed pairs aside; i = kNone if there is none.

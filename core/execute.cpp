@@ -9,23 +9,53 @@ void Engine::execute(int i) {
     if (e.partner < 0) {
         hit_wall(i, -1 - e.partner, e.t);
         ++wall_collisions_;
-        refresh(i);
+        if (crowded(i)) make_shell(i);
+        predict(i);
         return;
     }
     // In the order of their labels, so that no bit depends on who is where in memory.
     const bool first = labels_[size_t(i)] < labels_[size_t(e.partner)];
     const int32_t lo = first ? i : e.partner, hi = first ? e.partner : i;
     const Image m = several_images_ ? images_[size_t(i)] : Image{};
-    collide(lo, hi, first ? m : Image{} - m, e.t);
+    if (plain_)
+        collide_plain(lo, hi, e.t);
+    else
+        collide(lo, hi, first ? m : Image{} - m, e.t);
     ++collisions_;
-    refresh(lo);
-    refresh(hi);
+    if (crowded(lo)) make_shell(lo);
+    if (crowded(hi)) make_shell(hi);
+    predict_both(lo, hi);
 }
 
-// After its state changed: a new prediction, and a new shell if the old one holds a crowd.
-void Engine::refresh(int i) {
-    if (shells_on_ && crowded(i)) make_shell(i);
-    predict(i);
+// The usual case, and the same bits as below: free flight, one image, restitution 1.
+void Engine::collide_plain(int32_t i, int32_t j, double t) {
+    const Sphere &p = spheres_[size_t(i)], &q = spheres_[size_t(j)];
+    const Relative rel = relative(i, j);
+    const Vec3 path = rel.v * (t - rel.from);
+    const Vec3 boxes = periodic_ ? whole_boxes(rel.r + path) : Vec3{};
+    const Vec3 r = rel.r - boxes * world_.period + path;
+    const double sigma = p.r + q.r, r2 = norm2(r);
+    if (r2 < sigma * sigma * shallow2_) meet_deeper((sigma - std::sqrt(r2)) / sigma);
+
+    Body &a = bodies_[size_t(i)], &b = bodies_[size_t(j)];
+    Pair share_a{0.5, 0}, share_b{0.5, 0};
+    if (a.mass != b.mass || a.fixed()) {
+        share_a = b.fixed() ? Pair{1, 0} : a.fixed() ? Pair{} : share(a.mass, b.mass);
+        share_b = a.fixed() ? Pair{1, 0} : b.fixed() ? Pair{} : share(b.mass, a.mass);
+    }
+    const Vec3 change = smooth(r, rel.v, 1);
+    const Image unwrapped = Image{int32_t(boxes.x), int32_t(boxes.y), int32_t(boxes.z)} + a.image -
+                            b.image;
+    a.last = j, b.last = i;
+    a.last_image = nearby(unwrapped), b.last_image = nearby(Image{} - unwrapped);
+    if (logging_) log(t, i, j, change * (a.fixed() ? b.mass : a.mass * share_a.hi));
+    anchor(i, p.x + p.v * (t - p.t), p.v + change * share_a, t);
+    anchor(j, q.x + q.v * (t - q.t), q.v - change * share_b, t);
+}
+
+void Engine::meet_deeper(double depth) {
+    deepest_ = std::max(deepest_, depth);
+    shallow2_ = (1 - deepest_) * (1 - deepest_) * (1 + 1e-15);  // no square of a distance above
 }
 
 void Engine::collide(int32_t i, int32_t j, Image m, double t) {
@@ -39,8 +69,11 @@ void Engine::collide(int32_t i, int32_t j, Image m, double t) {
     Body &a = bodies_[size_t(i)], &b = bodies_[size_t(j)];
     const double ri = spheres_[size_t(i)].r, rj = spheres_[size_t(j)].r;
     const double distance = norm(r), speed = std::min(0.0, dot(r, v) / distance);
-    const Pair share_a = b.fixed() ? Pair{1, 0} : a.fixed() ? Pair{} : share(a.mass, b.mass);
-    const Pair share_b = a.fixed() ? Pair{1, 0} : b.fixed() ? Pair{} : share(b.mass, a.mass);
+    Pair share_a{0.5, 0}, share_b{0.5, 0};
+    if (a.mass != b.mass || a.fixed()) {
+        share_a = b.fixed() ? Pair{1, 0} : a.fixed() ? Pair{} : share(a.mass, b.mass);
+        share_b = a.fixed() ? Pair{1, 0} : b.fixed() ? Pair{} : share(b.mass, a.mass);
+    }
     const double mu = a.fixed() ? b.mass : a.mass * share_a.hi;
     deepest_ = std::max(deepest_, (ri + rj - distance) / (ri + rj));
 
@@ -134,7 +167,6 @@ void Engine::anchor(int32_t i, const Vec3& x, const Vec3& v, double t) {
     s.t = t;
     wrap(i);
     fresh_[size_t(i)] = 1;
-    if (glancing_) glances_[size_t(i)] = glance(i, s.x, t);
     ++events_[size_t(i)].count;
     if (!last_touch_.empty()) last_touch_[size_t(i)] = t;
 }
@@ -143,6 +175,7 @@ void Engine::wrap(int32_t i) {
     if (!periodic_) return;
     Sphere& s = spheres_[size_t(i)];
     const Vec3 boxes = whole_boxes(s.x);
+    if (boxes.x == 0 && boxes.y == 0 && boxes.z == 0) return;
     s.x -= boxes * world_.period;
     bodies_[size_t(i)].image = bodies_[size_t(i)].image + to_image(boxes);
 }

@@ -13,12 +13,12 @@ namespace carom {
 
 // Positions are whole numbers of which 2^32 fill the period of an axis: their differences wrap
 // around to the nearest image by themselves, and cost no digits in a large box. Times are whole
-// numbers too, of which 2^28 fill an epoch.
+// numbers too, of which 2^30 fill an epoch.
 struct alignas(32) Glance {
     int32_t x[3];  // where it was at time t
     int32_t t;
-    float v[3];  // not a number: solve every pair with this sphere exactly
-    float r;
+    float v[3];
+    float r;  // this or v[0] not a number: solve every pair with this sphere exactly
 };
 static_assert(sizeof(Glance) == 32);
 
@@ -30,9 +30,10 @@ struct Lens {
     float tick;             // time of one step of Glance::t
     float blur;             // added to radii: more than all errors of a distance
     float still;            // b^2 below still * v^2: parting, or not sure
-    float fastest2;         // faster or further or in size beyond these: solve exactly
-    double smallest, largest, farthest;
-    double length, time;    // what the unit of Glance::r and the unit of the bounds are
+    float fastest2;         // faster or further than these: solve exactly
+    double farthest;
+    double time;            // what the unit of the bounds is
+    double scale;           // from velocities to Glance::v
     double ticks_per_time;  // 1 / (tick * time)
 };
 

@@ -20,6 +20,7 @@ struct alignas(64) Row {
 
     static constexpr int16_t kLong = -1;
     std::span<const int32_t> ids() const { return {id, size_t(n)}; }
+    std::span<const int32_t> near_ids() const { return {id, size_t(n < 0 ? 0 : n)}; }
 };
 static_assert(sizeof(Row) == 128);
 

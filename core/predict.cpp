@@ -67,23 +67,9 @@ void Engine::consider_image(int i, int32_t j, const Relative& rel, Image m, Next
     if (precedes(i, e, best)) best = e;
 }
 
-// One pair in free flight where only one image can be met: the usual case, and the same as below.
-void Engine::consider_free(int i, int32_t j, Next& best) const {
-    Relative rel = relative(i, j);
-    Vec3 m;
-    if (periodic_) {
-        m = nearest((rel.r + rel.v * (now_ - rel.from)) * inverse_period_);
-        rel.r -= m * world_.period;
-    }
-    const double wait =
-        contact_time(rel.r, rel.v, spheres_[size_t(i)].r + spheres_[size_t(j)].r);
-    if (wait == kNever || (bodies_[size_t(i)].last == j && just_met(i, j, to_image(m)))) return;
-    const Next e{rel.from + wait, j, {}};
-    if (precedes(i, e, best)) best = e;
-}
-
 // One pair, in all images in which it can meet.
 void Engine::consider(int i, int32_t j, Next& best) const {
+    ++work_.exact;
     Relative rel = relative(i, j);
     if (!periodic_) return consider_image(i, j, rel, {}, best);
     // The image is chosen from where both are now.
@@ -111,27 +97,6 @@ void Engine::consider(int i, int32_t j, Next& best) const {
     consider_image(i, j, rel, to_image(m), best);
 }
 
-// The neighbours are looked through at a glance, and only who may be first is solved exactly. If
-// another may come before even that one, all are.
-void Engine::predict_pairs(int i, const Vec3& here, double leaves, Next& best) const {
-    if (!glancing_) {
-        for (const Row& row : rows_.of(i)) {
-            for (const int32_t j : row.ids()) fetch(&spheres_[size_t(j)]);
-            for (const int32_t j : row.ids()) consider(i, j, best);
-        }
-        return;
-    }
-    const Glance me = glance(i, here, now_);
-    for (const Row& row : rows_.of(i)) {
-        const Guess guess = kernels_->first_met(
-            lens_, glances_.data(), me, i, reinterpret_cast<const int32_t*>(&row), row.n);
-        if (guess.slot == 0 || now_ + guess.first * lens_.time > std::min(leaves, best.t)) continue;
-        consider_free(i, row.id[guess.slot - 1], best);
-        if (now_ + guess.second * lens_.time > std::min(leaves, best.t)) continue;
-        for (const int32_t j : row.ids()) consider_free(i, j, best);
-    }
-}
-
 void Engine::predict_walls(int i, Next& best) const {
     const Sphere& s = spheres_[size_t(i)];
     const Body& body = bodies_[size_t(i)];
@@ -151,7 +116,7 @@ double Engine::escape_time(int i, const Motion& at) const {
     const int widening = rows_.line(i).margin;
     if (widening >= kEndless) return kNever;
     const Event& e = events_[size_t(i)];
-    Vec3 d = at.x - Vec3{e.shell[0], e.shell[1], e.shell[2]};
+    Vec3 d = at.x - Vec3{e.shell_x, e.shell_yz[0], e.shell_yz[1]};
     d -= nearest(d * inverse_period_) * world_.period;
     // A hair early: two that touch just as they leave touching shells must know each other by then.
     const double room = margin(widening) * (1 - 1e-9);
@@ -168,25 +133,170 @@ double Engine::escape_time(int i, const Motion& at) const {
     return now_ + (b > 0 ? left2 / (b + q) : (q - b) / v2);
 }
 
+void Engine::find_event(int i) {
+    if (glancing_) {
+        refresh(i);
+        return decide(i, look(i));
+    }
+    Next best;
+    predict_walls(i, best);
+    double leaves = kNever;
+    if (shells_on_) {
+        for (const Row& row : rows_.of(i)) {
+            for (const int32_t j : row.ids()) fetch(&spheres_[size_t(j)]);
+            for (const int32_t j : row.ids()) consider(i, j, best);
+        }
+        leaves = escape_time(i, motion(i, now_));
+    }
+    settle_on(i, best.t, best.partner, leaves);
+    if (several_images_) images_[size_t(i)] = best.m;
+}
+
+inline void Engine::settle_on(int i, double t, int32_t partner, double leaves) {
+    Event& e = events_[size_t(i)];
+    const bool escapes = leaves <= t && leaves < kNever;  // of two at one time, this one first
+    e.t = escapes ? leaves : t;
+    if (gridded_) {
+        // Further than this, single precision may mistake who is first: look again at the crossing.
+        const double wait = t - now_, most = 64 * cell_;
+        const bool far = escapes && t < kNever &&
+                         wait * wait * norm2(spheres_[size_t(i)].v) > most * most;
+        e.contact = far ? kNever : t;
+        if (far) partner = kEscape;
+    } else if (escapes) {
+        partner = kEscape;
+    }
+    e.partner = partner;
+    e.partner_count = partner >= 0 ? events_[size_t(partner)].count : 0;
+}
+
+void Engine::look_through(int i, const GridBlock& block, Look& out) const {
+    int32_t n = -1;
+    while ((n = kernels_->collect(grid_.cells(), block, &near_.id[1],
+                                  int32_t(near_.id.size()) - 17)) < 0)
+        near_.id.resize(2 * near_.id.size());
+    int32_t* row = near_.id.data();
+    for (int k = 1; k <= 16; ++k) row[n + k] = i;
+    // The first place of each piece is not looked at: it is the last of the piece before.
+    for (; n > 0; n -= Row::kPlaces, row += Row::kPlaces)
+        out.add(kernels_->first_met(lens_, glances_.data(), glances_[size_t(i)], i, row,
+                                    std::min(n, Row::kPlaces)),
+                row, now_, lens_.time);
+}
+
+// First half of a prediction without gravity: who of the neighbours may be met first, at a glance.
+inline Engine::Look Engine::look(int i) const {
+    const Motion at = motion(i, now_);
+    Look out{kNever, kNone, kNever, kNever};
+    if (gridded_) {
+        const Grid::Cell cell = Grid::unpack(events_[size_t(i)].cell);
+        out.leaves = now_ + grid_.crossing(grid_.from_middle(at.x, cell), at.v, cell).wait;
+        look_through(i, grid_.around(cell), out);
+        return out;
+    }
+    out.leaves = escape_time(i, at);
+    for (const Row& part : rows_.of(i)) {
+        const auto* row = reinterpret_cast<const int32_t*>(&part);
+        out.add(kernels_->first_met(lens_, glances_.data(), glances_[size_t(i)], i, row, part.n),
+                row, now_, lens_.time);
+    }
+    return out;
+}
+
+// Second half: only the guess is solved exactly. If another may come before even that one, all are.
+inline void Engine::decide(int i, const Look& look) {
+    double t = kNever;
+    int32_t partner = kNone;
+    if (!world_.walls.empty()) {
+        Next wall;
+        predict_walls(i, wall);
+        t = wall.t;
+        partner = wall.partner;
+    }
+    choose(i, look, t, partner);
+    settle_on(i, t, partner, look.leaves);
+}
+
+inline void Engine::choose(int i, const Look& look, double& t, int32_t& partner) const {
+    // On a grid what is met later is known for good, so that a crossing need look at new cells only.
+    const double leaves = gridded_ ? kNever : look.leaves;
+    double limit = std::min(t, leaves);
+    if (look.first < kNever && look.first <= limit && look.partner != i) {
+        const double met = free_contact(i, look.partner);
+        if (met < t || (met == t && t < kNever &&
+                        precedes(i, {met, look.partner, {}}, {t, partner, {}}))) {
+            t = met;
+            partner = look.partner;
+            limit = std::min(t, leaves);
+        }
+    }
+    if (look.second == kNever || look.second > limit) return;
+    Next best{t, partner, {}};
+    each_near(i, [&](int32_t j) { consider(i, j, best); });
+    t = best.t;
+    partner = best.partner;
+}
+
+// The sphere enters the next cell of the grid. What it would have met, it still will; only the nine
+// cells that come into sight can hold something sooner.
+void Engine::change_cell(int i) {
+    ++work_.shells;
+    Event& e = events_[size_t(i)];
+    const Motion at = motion(i, now_);
+    const Grid::Cell old = Grid::unpack(e.cell);
+    const int axis = grid_.crossing(grid_.from_middle(at.x, old), at.v, old).axis;
+    const bool up = (axis == 0 ? at.v.x : axis == 1 ? at.v.y : at.v.z) > 0;
+    const Grid::Cell cell = grid_.next(old, axis, up);
+    grid_.remove(i, old);
+    grid_.add(i, cell);
+    e.cell = Grid::pack(cell);
+    if (e.partner == kEscape || stale(e)) return predict(i);
+    refresh(i);
+    Look seen{kNever, kNone, kNever, kNever};
+    seen.leaves = now_ + grid_.crossing(grid_.from_middle(at.x, cell), at.v, cell).wait;
+    look_through(i, grid_.face(cell, axis, up), seen);
+    double t = e.contact;
+    int32_t partner = e.partner;
+    choose(i, seen, t, partner);
+    settle_on(i, t, partner, seen.leaves);
+    calendar_.schedule(i, pending());
+}
+
+// When two in free flight meet in the one image that they can: what `consider` finds for them.
+inline double Engine::free_contact(int i, int32_t j) const {
+    ++work_.exact;
+    Relative rel = relative(i, j);
+    Vec3 m;
+    if (periodic_) {
+        m = nearest((rel.r + rel.v * (now_ - rel.from)) * inverse_period_);
+        rel.r -= m * world_.period;
+    }
+    const double wait = contact_time(rel.r, rel.v, spheres_[size_t(i)].r + spheres_[size_t(j)].r);
+    if (bodies_[size_t(i)].last == j && just_met(i, j, to_image(m))) return kNever;
+    return rel.from + wait;
+}
+
 void Engine::predict(int i) {
+    ++work_.predictions;
     find_event(i);
     calendar_.schedule(i, pending());
 }
 
-void Engine::find_event(int i) {
-    Next best;
-    if (!world_.walls.empty()) predict_walls(i, best);
-    if (shells_on_) {
-        const Motion at = motion(i, now_);
-        const double leaves = escape_time(i, at);
-        predict_pairs(i, at.x, leaves, best);
-        if (leaves <= best.t && leaves < kNever) best = {leaves, kEscape, {}};  // of two this first
+// Both partners of a collision: the second is looked at while the first waits for memory.
+void Engine::predict_both(int i, int j) {
+    if (!glancing_) {
+        predict(i);
+        predict(j);
+        return;
     }
-    Event& e = events_[size_t(i)];
-    e.t = best.t;
-    e.partner = best.partner;
-    e.partner_count = best.partner >= 0 ? events_[size_t(best.partner)].count : 0;
-    if (several_images_) images_[size_t(i)] = best.m;
+    work_.predictions += 2;
+    refresh(i);
+    refresh(j);
+    const Look a = look(i), b = look(j);
+    decide(i, a);
+    decide(j, b);
+    calendar_.schedule(i, pending());
+    calendar_.schedule(j, pending());
 }
 
 }  // namespace carom

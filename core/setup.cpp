@@ -9,6 +9,8 @@ namespace carom {
 namespace {
 
 constexpr double kSpherical = 4.18879020478639098;  // 4 pi / 3
+constexpr double kDilute = 0.12;                    // packing fraction up to which a grid is faster
+constexpr double kPerCell = 1;                      // spheres in a cell of it
 
 double median_radius(const Array<Sphere>& spheres) {
     std::vector<double> r;
@@ -40,6 +42,8 @@ Vec3 extent(const Array<Sphere>& spheres, const Vec3& period) {
 void Engine::choose_shells(const Tuning& tuning) {
     constexpr double kNeighbours = 11;
     if (!shells_on_) return;
+    gridded_ = glancing_ = choose_grid(tuning);
+    if (gridded_) return glances_.resize(size());
     const double r = median_radius(spheres_);
     double largest = 0, giants = 0;
     const Vec3 box = extent(spheres_, world_.period);
@@ -108,8 +112,69 @@ void Engine::settle(int i) {
     }
 }
 
+// The room in which the spheres are for certain: false if an axis has neither period nor walls.
+bool Engine::room(Vec3& centre, Vec3& size) const {
+    const Vec3& p = world_.period;
+    const double period[3] = {p.x, p.y, p.z};
+    double lo[3], hi[3];
+    for (int a = 0; a < 3; ++a) {
+        lo[a] = period[a] > 0 ? -0.5 * period[a] : -kNever;
+        hi[a] = period[a] > 0 ? 0.5 * period[a] : kNever;
+        for (const Wall& w : world_.walls) {
+            const double n[3] = {w.normal.x, w.normal.y, w.normal.z};
+            if (w.kind == WallKind::plane) {
+                if (n[a] == 1) lo[a] = std::max(lo[a], w.offset);
+                if (n[a] == -1) hi[a] = std::min(hi[a], -w.offset);
+            } else if (w.kind == WallKind::sphere || a < 2) {
+                lo[a] = std::max(lo[a], -w.offset);
+                hi[a] = std::min(hi[a], w.offset);
+            }
+        }
+        if (!(hi[a] - lo[a] < kNever)) return false;
+    }
+    centre = {0.5 * (lo[0] + hi[0]), 0.5 * (lo[1] + hi[1]), 0.5 * (lo[2] + hi[2])};
+    size = {hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]};
+    return true;
+}
+
+// A grid instead of lists, where spheres are alike and in a room.
+bool Engine::choose_grid(const Tuning& tuning) {
+    if (!shells_on_ || gravity_ || tuning.grid == 0) return false;
+    double largest = 0, section = 0;
+    for (const Sphere& s : spheres_) {
+        largest = std::max(largest, s.r);
+        section += s.r * s.r * s.r;
+    }
+    Vec3 centre, size;
+    if (!room(centre, size)) return false;
+    const double volume = size.x * size.y * size.z;
+    const double packing = kSpherical * section / volume;
+    if (tuning.grid < 0 && packing > kDilute) return false;
+    if (largest > 2 * median_radius(spheres_)) return false;
+    const double width = std::max(2 * largest * (1 + 1e-6),
+                                  std::cbrt(kPerCell * volume / double(size_t(spheres_.size()))));
+    const Vec3& p = world_.period;
+    const bool periodic[3] = {p.x > 0, p.y > 0, p.z > 0};
+    if (!grid_.reset(tuning.cell > 0 ? std::max(width, tuning.cell) : width, centre, size, periodic,
+                     spheres_.size()))
+        return false;
+    cell_ = width;
+    common_ = largest;
+    return true;
+}
+
+void Engine::build_grid() {
+    grid_.clear();
+    for (size_t i = 0; i < size(); ++i) {
+        const Grid::Cell cell = grid_.cell_of(motion(int(i), now_).x);
+        grid_.add(int32_t(i), cell);
+        events_[i].cell = Grid::pack(cell);
+    }
+}
+
 void Engine::build_shells() {
     if (!shells_on_) return;
+    if (gridded_) return build_grid();
     while (!build_shells_once()) {
         margin_ *= 0.5;
         ++least_widening_;

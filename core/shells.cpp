@@ -16,9 +16,9 @@ constexpr size_t kLonely = 10, kCrowded = 30;  // neighbours
 // The centre is rounded to single precision: what is stored is the centre.
 void Engine::place_shell(int i, const Vec3& centre, int widening) {
     Event& e = events_[size_t(i)];
-    e.shell[0] = float(centre.x);
-    e.shell[1] = float(centre.y);
-    e.shell[2] = float(centre.z);
+    e.shell_x = float(centre.x);
+    e.shell_yz[0] = float(centre.y);
+    e.shell_yz[1] = float(centre.z);
     const double far =
         std::max(std::abs(centre.x), std::max(std::abs(centre.y), std::abs(centre.z)));
     while (widening < kEndless && margin(widening) < far * 0x1p-20) ++widening;  // rounding is less
@@ -39,12 +39,22 @@ void Engine::escape(int i) {
 }
 
 bool Engine::crowded(int i) const {
+    if (!shells_on_ || gridded_) return false;
     return rows_.size(i) > kCrowded && rows_.line(i).margin > least_widening(i);
+}
+
+// Where to centre a shell: ahead of the sphere, where it will be (a fourth fewer shells at packing
+// fraction 0.25); in a dense fluid, where it soon turns round, at the sphere.
+Vec3 Engine::ahead(const Motion& at, double r, int widening) const {
+    const double speed = norm(at.v);
+    if (speed == 0 || margin_ <= 0.5 * r) return at.x;
+    return at.x + at.v * (0.6 * margin(widening) / speed);
 }
 
 // A shell around where the sphere is now, and with it its row of neighbours. A sphere that flies
 // alone gets a wider shell each time, so that an expanding cloud costs ever less.
 void Engine::make_shell(int i) {
+    ++work_.shells;
     const int widening = rows_.line(i).margin;
     int wish = widening;
     if (crowded(i))
@@ -54,20 +64,14 @@ void Engine::make_shell(int i) {
 
     cells_.remove(i, shell(i));
     const Motion at = motion(i, now_);
-    const double speed = norm(at.v);
     for (;;) {
-        // Ahead of the sphere, where it will be (a fourth fewer shells at packing fraction 0.25;
-        // in a dense fluid, where it soon turns round, none).
-        const double ahead =
-            speed > 0 && margin_ > 0.5 * spheres_[size_t(i)].r ? 0.6 * margin(wish) / speed : 0;
-        place_shell(i, at.x + at.v * ahead, wish);
+        place_shell(i, ahead(at, spheres_[size_t(i)].r, wish), wish);
         cells_.search(shell(i), [this](int32_t j) { return shell(j); }, found_);
         if (wish <= widening || found_.n <= kLonely) break;
         wish = widening;
     }
     cells_.add(i, shell(i));
     exchange(i);
-    if (glancing_) glances_[size_t(i)] = glance(i, at.x, now_);
 }
 
 // The row becomes what was found. Rows are symmetric: whoever joins or leaves this row gains or
@@ -106,11 +110,12 @@ void Engine::exchange(int i) {
 // too small or in too wide a shell: those are marked to be solved exactly.
 void Engine::focus() {
     if (!glancing_) return;
+    far_ = size() > 8000;
     const double epoch = clock_.epoch;
     double energy = 0;
     for (const Sphere& s : spheres_) energy += norm2(s.v);
     const double speed = std::sqrt(energy / double(size()));
-    lens_.length = Clock::power_of_two_above(cell_);
+    const double length = Clock::power_of_two_above(cell_);
     lens_.time = speed > 0 ? std::min(Clock::power_of_two_above(cell_ / speed), epoch) : epoch;
     // An open axis has a period of 4096 cells: no two neighbours that are not marked are further
     // apart than 300.
@@ -120,22 +125,25 @@ void Engine::focus() {
     lens_.inverse_period = {1 / period[0], 1 / period[1], 1 / period[2]};
     double widest = 0;
     for (int a = 0; a < 3; ++a) {
-        const double unit = period[a] * 0x1p-32 / lens_.length;
+        const double unit = period[a] * 0x1p-32 / length;
         lens_.unit[a] = float(unit);
         widest = std::max(widest, unit);
     }
-    lens_.ticks_per_time = 0x1p28 / epoch;
-    lens_.tick = float(0x1p-28 * epoch / lens_.time);
-    lens_.blur = float(0x1p-11 * cell_ / lens_.length + 16 * widest);
+    lens_.ticks_per_time = 0x1p30 / epoch;
+    lens_.tick = float(0x1p-30 * epoch / lens_.time);
+    lens_.blur = float(0x1p-15 * cell_ / length + 16 * widest);
     lens_.still = lens_.blur * lens_.blur;
-    const float fastest = lens_.blur / (32 * lens_.tick);
+    const float fastest = lens_.blur / (16 * lens_.tick);
     lens_.fastest2 = fastest * fastest;
-    lens_.smallest = cell_ / 1024;
-    lens_.largest = 128 * cell_;
     lens_.farthest = 0x1p30 * cell_;
-    focused_until_ = now_ + 4 * epoch;
-    for (size_t i = 0; i < size(); ++i)
-        glances_[i] = glance(int(i), motion(int(i), now_).x, now_);
+    lens_.scale = lens_.time / length;
+    focused_until_ = now_ + 1.5 * epoch;
+    for (size_t i = 0; i < size(); ++i) {
+        const double r = spheres_[i].r;
+        const bool clear = r < 128 * cell_ && r > cell_ / 1024;
+        glances_[i].r = clear ? float(r / length) : std::numeric_limits<float>::quiet_NaN();
+        refresh(int(i));
+    }
 }
 
 }  // namespace carom

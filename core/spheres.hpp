@@ -67,13 +67,21 @@ struct Body {
 };
 static_assert(sizeof(Body) == 32);
 
-// The sphere's next event, as predicted.
+// The sphere's next event, as predicted, and where its neighbours are known: in a shell (lists of
+// neighbours) or around a cell (a grid).
 struct Event {
     double t = 0;
     int32_t partner = kNone;
     uint32_t partner_count = 0;  // of the partner when predicted: differs later = stale
     uint32_t count = 0;          // impulses this sphere has received
-    float shell[3] = {0, 0, 0};  // centre of the shell in which its neighbours are known
+    union {
+        int32_t cell = 0;  // packed coordinates
+        float shell_x;
+    };
+    union {
+        double contact = 0;  // with the partner; if later than t, the sphere leaves its cell before
+        float shell_yz[2];
+    };
 };
 static_assert(sizeof(Event) == 32);
 

@@ -41,7 +41,7 @@ inline double nearest(double x) {
 // The same for the next whole number below.
 inline double floored(double x) {
     const double n = nearest(x);
-    return n > x ? n - 1 : n;
+    return n - double(n > x);  // no branch: it could not be foreseen
 }
 inline Vec3 nearest(const Vec3& a) { return {nearest(a.x), nearest(a.y), nearest(a.z)}; }
 

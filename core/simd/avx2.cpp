@@ -6,6 +6,6 @@
 
 namespace carom::avx2 {
 
-Kernels kernels() { return {"avx2", first_met, near, difference}; }
+Kernels kernels() { return {"avx2", first_met, near, collect, difference}; }
 
 }  // namespace carom::avx2

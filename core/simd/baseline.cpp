@@ -6,6 +6,6 @@
 
 namespace carom::baseline {
 
-Kernels kernels() { return {"baseline", first_met, near, difference}; }
+Kernels kernels() { return {"baseline", first_met, near, collect, difference}; }
 
 }  // namespace carom::baseline

@@ -43,6 +43,17 @@ using SixteenBytes [[gnu::vector_size(16)]] = uint8_t;
 #endif
 }
 
+// Bit k: is lane k negative?
+[[gnu::always_inline]] inline uint32_t mask_of(Eight truth) {
+#if defined(__AVX__)
+    return uint32_t(_mm256_movemask_ps((__m256)truth));
+#else
+    uint32_t mask = 0;
+    for (int k = 0; k < 8; ++k) mask |= uint32_t(truth[k]) >> 31 << k;
+    return mask;
+#endif
+}
+
 // The shells of one line whose place is nearer than both reaches: appended to `out`, which has room
 // for eight. x^2 + y^2 + z^2 - r^2 < 0, its terms multiplied two by two. The eighth lane is no
 // shell.
@@ -58,10 +69,11 @@ using SixteenBytes [[gnu::vector_size(16)]] = uint8_t;
     _mm256_storeu_si256((__m256i*)out, _mm256_maskz_compress_epi32(mask, (__m256i)id));
     return __builtin_popcount(mask);
 #else
+    const uint32_t mask = mask_of(inside);
     int32_t n = 0;  // no branch: whether a shell is near cannot be foreseen
     for (int k = 0; k < CellLine::kSlots; ++k) {
         out[n] = line.id[k];
-        n += int32_t(uint32_t(inside[k]) >> 31);
+        n += int32_t(mask >> k & 1);
     }
     return n;
 #endif
@@ -86,15 +98,41 @@ int32_t near(const CellLine* lines, const CellBlock& block, int32_t* out, int32_
     return found;
 }
 
-// Bit k: is lane k true?
-[[gnu::always_inline]] inline uint32_t mask_of(Eight truth) {
-#if defined(__AVX__)
-    return uint32_t(_mm256_movemask_ps((__m256)truth));
+// The spheres of one grid cell: appended to `out`, which has room for four.
+[[gnu::always_inline]] inline int32_t spheres_in(const GridCell& cell, int32_t* out) {
+#if defined(__AVX512VL__) && defined(__AVX512DQ__)
+    const __m128i id = _mm_load_si128(reinterpret_cast<const __m128i*>(cell.id));
+    const __mmask8 mask = uint8_t(~_mm_movepi32_mask(id)) & 15;
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out), _mm_maskz_compress_epi32(mask, id));
+    return __builtin_popcount(mask);
 #else
-    uint32_t mask = 0;
-    for (int k = 0; k < 8; ++k) mask |= uint32_t(truth[k] & 1) << k;
-    return mask;
+    int32_t n = 0;  // no branch: how full a cell is cannot be foreseen
+    for (const int32_t id : cell.id) {
+        out[n] = id;
+        n += id >= 0;
+    }
+    return n;
 #endif
+}
+
+// How many spheres are in a block of grid cells; -1 if `out` may not have room for all.
+int32_t collect(const GridCell* cells, const GridBlock& block, int32_t* out, int32_t room) {
+    int32_t found = 0;
+    for (int kz = 0; kz < block.z.n; ++kz) {
+        for (int ky = 0; ky < block.y.n; ++ky) {
+            const int32_t row = block.z.cell[kz] + block.y.cell[ky];
+            for (int kx = 0; kx < block.x.n; ++kx) {
+                const GridCell* cell = &cells[row + block.x.cell[kx]];
+                for (;;) {
+                    if (found + 4 > room) return -1;
+                    found += spheres_in(*cell, out + found);
+                    if (cell->id[3] >= -1) break;
+                    cell = &cells[GridCell::link(cell->id[3])];
+                }
+            }
+        }
+    }
+    return found;
 }
 
 // `row`: 32 numbers, of which the first is not a neighbour's and n follow, then none of `now`.

@@ -48,6 +48,20 @@ struct CellBlock {
     int16_t minus_reach;
 };
 
+// Four spheres that share a cell of the grid, as a quarter of a cache line.
+struct alignas(16) GridCell {
+    static constexpr int kPlaces = 4;
+    int32_t id[kPlaces] = {-1, -1, -1, -1};  // -1: free. The last, below -1: more are behind,
+    static int32_t link(int32_t cell) { return -2 - cell; }  // in the cell of this number
+};
+
+// A block of grid cells: what each coordinate adds to the number of the cell.
+struct GridBlock {
+    struct Axis {
+        int32_t n, cell[3];
+    } x, y, z;
+};
+
 // Who leaves a row of neighbours and who joins it: bit k stands for place k of either list.
 struct Difference {
     uint32_t gone, fresh;
@@ -60,6 +74,8 @@ struct Kernels {
                        const int32_t* row, int n);
     // See cell_search.hpp.
     int32_t (*near)(const CellLine* lines, const CellBlock&, int32_t* out, int32_t room);
+    // See cell_search.hpp.
+    int32_t (*collect)(const GridCell* cells, const GridBlock&, int32_t* out, int32_t room);
     // See cell_search.hpp.
     Difference (*difference)(const int32_t* row, int n, const int32_t* now, int n_now);
 };

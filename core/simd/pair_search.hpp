@@ -183,7 +183,7 @@ Guess first_met(const Lens& lens, const Glance* all, const Glance& me, int32_t s
     for (int k = kLanes; k <= n; k += kLanes)
         lane = lane.with({bounds(lens, all, me, row + k, kEach + k), none});
     const Two<int32_t> two = of_all_lanes(lane);
-    if (two.first == kNoTime) return {0, 0, 0};
+    // Infinity has no last bits: slot 0 if nobody can be met.
     return {two.first & kSlots, std::bit_cast<float>(two.first & ~kSlots),
             std::bit_cast<float>(two.second & ~kSlots)};
 }

@@ -53,6 +53,7 @@ class Engine:
         slice: float = 0.05,
         simd: str = "",
         sort: bool = True,
+        grid: int = -1,
     ) -> None: ...
     def advance(self, until: float, max_collisions: int, max_events: int) -> int:
         """Runs until a time or a count; see Stop."""
@@ -102,6 +103,12 @@ class Engine:
     @property
     def withheld(self) -> float:
         """Energy the contact-time cure kept."""
+
+    def work(self) -> dict[str, int]:
+        """
+        What it has done: predictions, shells remade or cells crossed, predictions of a
+        partner hit by another, pairs solved exactly.
+        """
 
     @property
     def memory(self) -> int:

@@ -102,9 +102,10 @@ class FastEngine:
     """The engine in C++: calendar queue, neighbour lists, exact contact times.
 
     Cost per collision does not grow with the number of spheres. `log=False` keeps no event
-    records. `margin`, `cell`, `slice_seconds`, `simd` (the instruction set) and `sort` (neighbours
-    in space become neighbours in memory) are bookkeeping for tests: the trajectory's bits do not
-    depend on them. Any thread may call it: a call waits for the slice in hand.
+    records. `margin`, `cell`, `slice_seconds`, `simd` (the instruction set), `sort` (neighbours in
+    space become neighbours in memory) and `grid` (1: neighbours on a grid where that can be, 0: in
+    lists, -1: whichever is faster) are bookkeeping for tests: the trajectory's bits do not depend
+    on them. Any thread may call it: a call waits for the slice in hand.
     """
 
     def __init__(
@@ -118,6 +119,7 @@ class FastEngine:
         slice_seconds: float = 0.05,
         simd: str = "",
         sort: bool = True,
+        grid: int = -1,
     ) -> None:
         self._start = state.copy()
         for name in UNCHANGING:
@@ -154,6 +156,7 @@ class FastEngine:
             slice=slice_seconds,
             simd=simd,
             sort=sort,
+            grid=grid,
         )
 
     @property
@@ -185,6 +188,12 @@ class FastEngine:
     def collapse(self) -> tuple[float, int, int] | None:
         """(time, i, j) of an inelastic collapse, j as in event records; None if there is none."""
         return self._core.collapse
+
+    def work(self) -> dict[str, int]:
+        """What it has done so far: `predictions`; `shells` remade or cells crossed; `stale`, those
+        predicted anew because the partner was hit by another; `exact`, pairs solved exactly.
+        """
+        return self._core.work()
 
     @property
     def memory(self) -> int:

@@ -1,0 +1,230 @@
+// Who is near in a dilute gas of like spheres: cells as wide as a sphere or a little more, and no
+// lists. Whoever may touch a sphere is in one of the 27 cells around it; when it crosses into the
+// next cell, nine new ones are looked into. That costs a quarter of making a list, and a quarter of
+// the memory.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "memory.hpp"
+#include "simd/kernels.hpp"
+#include "vec3.hpp"
+
+namespace carom {
+
+class Grid {
+public:
+    // Coordinates of a cell, ten bits each.
+    static constexpr int kBits = 10, kMost = (1 << kBits) - 1;
+    struct Cell {
+        int32_t c[3];
+    };
+    static int32_t pack(Cell a) { return a.c[0] | a.c[1] << kBits | a.c[2] << (2 * kBits); }
+    static Cell unpack(int32_t p) { return {{p & kMost, (p >> kBits) & kMost, p >> (2 * kBits)}}; }
+
+    // Cells at least `width` wide in a room of `size` around `centre`. Along an axis with walls the
+    // cells of the border go on for ever. False if that makes too few cells, or too many.
+    bool reset(double width, const Vec3& centre, const Vec3& size, const bool periodic[3],
+               size_t spheres) {
+        const double side[3] = {size.x, size.y, size.z}, mid[3] = {centre.x, centre.y, centre.z};
+        double all = 1;
+        for (int a = 0; a < 3; ++a) {
+            const double n = std::floor(side[a] / width);
+            if (!(n >= 4 && n <= kMost)) return false;
+            n_[a] = int32_t(n);
+            width_[a] = side[a] / n;
+            low_[a] = mid[a] - 0.5 * side[a];
+            period_[a] = periodic[a] ? side[a] : 0;
+            inverse_[a] = periodic[a] ? 1 / side[a] : 0;
+            all *= n;
+        }
+        if (all > 4 * double(spheres) + 64) return false;
+        clear();
+        return true;
+    }
+    void clear() {
+        cells_.assign(size_t(n_[0]) * size_t(n_[1]) * size_t(n_[2]), GridCell{});
+        free_ = -1;
+    }
+
+    Cell cell_of(const Vec3& x) const {
+        const double p[3] = {x.x, x.y, x.z};
+        Cell out;
+        for (int a = 0; a < 3; ++a) {
+            const auto c = int64_t(std::clamp((p[a] - low_[a]) / width_[a], 0.0, n_[a] - 1.0));
+            out.c[a] = int32_t(c);
+        }
+        return out;
+    }
+
+    void add(int32_t i, Cell at) {
+        const int32_t number = number_of(at);
+        GridCell* cell = &cells_[size_t(number)];
+        for (int32_t& id : cell->id) {
+            if (id != -1) continue;
+            id = i;
+            return;
+        }
+        // Full: the last gives way to a link, to a cell behind that holds it and what was linked.
+        int32_t spare = free_;
+        if (spare >= 0) {
+            free_ = cells_[size_t(spare)].id[0];
+        } else {
+            spare = int32_t(cells_.size());
+            grow(cells_);
+            cell = &cells_[size_t(number)];
+        }
+        GridCell& behind = cells_[size_t(spare)];
+        behind = GridCell{};
+        behind.id[0] = i;
+        behind.id[GridCell::kPlaces - 1] = cell->id[GridCell::kPlaces - 1];
+        cell->id[GridCell::kPlaces - 1] = GridCell::link(spare);
+    }
+
+    void remove(int32_t i, Cell at) {  // it must be there
+        int32_t number = number_of(at), before = -1;
+        for (;;) {
+            GridCell& cell = cells_[size_t(number)];
+            for (int32_t& id : cell.id) {
+                if (id != i) continue;
+                id = -1;
+                if (before >= 0) tidy(before, number);
+                return;
+            }
+            before = number;
+            number = GridCell::link(cell.id[GridCell::kPlaces - 1]);
+        }
+    }
+
+    bool has(int32_t i, Cell at) const {
+        for (int32_t number = number_of(at);;) {
+            const GridCell& cell = cells_[size_t(number)];
+            for (const int32_t id : cell.id)
+                if (id == i) return true;
+            if (cell.id[GridCell::kPlaces - 1] >= -1) return false;
+            number = GridCell::link(cell.id[GridCell::kPlaces - 1]);
+        }
+    }
+
+    // From the middle of the cell to x, nearest image.
+    Vec3 from_middle(const Vec3& x, Cell at) const {
+        const double p[3] = {x.x, x.y, x.z};
+        double d[3];
+        for (int a = 0; a < 3; ++a) {
+            d[a] = p[a] - (low_[a] + (at.c[a] + 0.5) * width_[a]);
+            d[a] -= nearest(d[a] * inverse_[a]) * period_[a];
+        }
+        return {d[0], d[1], d[2]};
+    }
+
+    // Up to rounding.
+    bool holds(const Vec3& x, Cell at) const {
+        const Vec3 d = from_middle(x, at);
+        const double p[3] = {d.x, d.y, d.z};
+        for (int a = 0; a < 3; ++a) {
+            const double most = width_[a] * (0.5 + 1e-9);
+            const bool border_low = period_[a] == 0 && at.c[a] == 0,
+                       border_high = period_[a] == 0 && at.c[a] == n_[a] - 1;
+            if ((p[a] < -most && !border_low) || (p[a] > most && !border_high)) return false;
+        }
+        return true;
+    }
+
+    // When and through which face a sphere at d from the middle leaves its cell.
+    struct Crossing {
+        double wait;
+        int axis;
+    };
+    Crossing crossing(const Vec3& d, const Vec3& v, Cell at) const {
+        const double from[3] = {d.x, d.y, d.z}, speed[3] = {v.x, v.y, v.z};
+        Crossing out{1e300, 0};
+        for (int a = 0; a < 3; ++a) {
+            const double wait = (std::copysign(0.5 * width_[a], speed[a]) - from[a]) / speed[a];
+            const bool open = period_[a] == 0 && at.c[a] == (speed[a] > 0 ? n_[a] - 1 : 0);
+            const bool sooner = wait < out.wait && speed[a] != 0 && !open;
+            out.wait = sooner ? wait : out.wait;
+            out.axis = sooner ? a : out.axis;
+        }
+        out.wait = std::max(out.wait, 0.0);
+        return out;
+    }
+    Cell next(Cell at, int axis, bool up) const {
+        int32_t& c = at.c[axis];
+        c += up ? 1 : -1;
+        if (c < 0) c = n_[axis] - 1;
+        if (c == n_[axis]) c = 0;
+        return at;
+    }
+
+    GridBlock around(Cell at) const {
+        GridBlock b;
+        fill(b.x, at.c[0], 0, 1);
+        fill(b.y, at.c[1], 1, n_[0]);
+        fill(b.z, at.c[2], 2, n_[0] * n_[1]);
+        return b;
+    }
+    // The nine cells that come into sight through the face just crossed.
+    GridBlock face(Cell at, int axis, bool up) const {
+        GridBlock b = around(at);
+        GridBlock::Axis& a = axis == 0 ? b.x : axis == 1 ? b.y : b.z;
+        if (period_[axis] == 0 && at.c[axis] == (up ? n_[axis] - 1 : 0)) {
+            a.n = 0;  // the border goes on for ever
+            return b;
+        }
+        a.cell[0] = up ? a.cell[a.n - 1] : a.cell[0];
+        a.n = 1;
+        return b;
+    }
+
+    void fetch_block(const GridBlock& b) const {
+        for (int z = 0; z < b.z.n; ++z)
+            for (int y = 0; y < b.y.n; ++y)
+                for (int x = 0; x < b.x.n; ++x)
+                    fetch(&cells_[size_t(b.z.cell[z] + b.y.cell[y] + b.x.cell[x])]);
+    }
+
+    const GridCell* cells() const { return cells_.data(); }
+    size_t bytes() const { return cells_.capacity() * sizeof(GridCell); }
+
+private:
+    int32_t number_of(Cell a) const { return (a.c[2] * n_[1] + a.c[1]) * n_[0] + a.c[0]; }
+
+    void fill(GridBlock::Axis& out, int32_t c, int axis, int32_t stride) const {
+        const int32_t n = n_[axis];
+        out.n = 3;
+        const bool closed = period_[axis] > 0;
+        int32_t lo = c - 1, hi = c + 1;
+        if (lo < 0) lo = n - 1;
+        if (hi == n) hi = 0;
+        out.cell[0] = lo * stride;
+        out.cell[1] = c * stride;
+        out.cell[2] = hi * stride;
+        if (closed) return;
+        if (c == 0) {
+            out.n = 2;
+            out.cell[0] = out.cell[1];
+            out.cell[1] = out.cell[2];
+        } else if (c == n - 1) {
+            out.n = 2;
+        }
+    }
+
+    // Drops the cell behind `before` once it is empty.
+    void tidy(int32_t before, int32_t number) {
+        constexpr int last = GridCell::kPlaces - 1;
+        GridCell& cell = cells_[size_t(number)];
+        for (const int32_t id : cell.id)
+            if (id >= 0) return;
+        cells_[size_t(before)].id[last] = cell.id[last];
+        cell.id[0] = free_;
+        free_ = number;
+    }
+
+    int32_t n_[3] = {0, 0, 0};
+    double width_[3], low_[3], period_[3], inverse_[3];
+    Array<GridCell> cells_;
+    int32_t free_ = -1;  // chain of spare cells
+};
+
+}  // namespace carom
