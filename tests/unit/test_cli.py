@@ -283,12 +283,12 @@ class TestManners:
     def test_without_words_it_helps(self, cli):
         status, out, err = cli("")
         assert (status, err) == (0, "")
-        for command in ("scenes", "show", "run", "compare"):
+        for command in ("scenes", "show", "run", "compare", "sketch", "bench"):
             assert command in out
         assert "--debug" in out
 
     def test_help_of_each_command(self, cli):
-        for command in ("scenes", "show", "run", "compare"):
+        for command in ("scenes", "show", "run", "compare", "sketch", "bench"):
             status, out, _ = cli(f"{command} --help")
             assert status == 0
             assert "--json" in out

@@ -77,8 +77,8 @@ def test_the_readme_has_exactly_two_set_up_lines_and_ci_finds_the_tests() -> Non
 
 @pytest.mark.parametrize("arguments", carom_lines(), ids=" ".join)
 def test_the_readme_commands_work(arguments: list[str]) -> None:
-    # `show` and `sketch` serve until Ctrl-C: here they only explain themselves.
-    extra = ["--help"] if arguments[0] in ("show", "sketch") else []
+    # `show` and `sketch` serve until Ctrl-C, `bench` takes a minute: here they explain themselves.
+    extra = ["--help"] if arguments[0] in ("show", "sketch", "bench") else []
     status, output = run_cli([*arguments, *extra])
     assert status == 0
     assert output

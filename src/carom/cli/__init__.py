@@ -1,4 +1,4 @@
-"""The command line: ``carom scenes``, ``show``, ``run``, ``compare``, ``sketch``."""
+"""The command line: ``carom scenes``, ``show``, ``run``, ``compare``, ``sketch``, ``bench``."""
 
 from carom.cli.commands import main
 

@@ -13,6 +13,7 @@ from rich.text import Text
 import carom
 from carom import scenes
 from carom.cli import report
+from carom.cli.benching import bench
 from carom.cli.comparing import compare as compare_both
 from carom.cli.comparing import side_by_side
 from carom.cli.running import as_data, execute, goal, summary
@@ -248,6 +249,7 @@ def compare(
 
 
 app.command()(sketch)
+app.command()(bench)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
