@@ -29,7 +29,7 @@ struct Lens {
     float unit[3];          // length of one step of Glance::x
     float tick;             // time of one step of Glance::t
     float blur;             // added to radii: more than all errors of a distance
-    float still;            // b^2 below still * v^2: parting, or not sure
+    float still;            // b^2 below still * v^2: it is not sure that they part
     float fastest2;         // faster or further than these: solve exactly
     double farthest;
     double time;            // what the unit of the bounds is

@@ -190,8 +190,10 @@ class FastEngine:
         return self._core.collapse
 
     def work(self) -> dict[str, int]:
-        """What it has done so far: `predictions`; `shells` remade or cells crossed; `stale`, those
-        predicted anew because the partner was hit by another; `exact`, pairs solved exactly.
+        """How often it has done what.
+
+        `predictions`; `shells` remade, or cells crossed; `stale`, those predicted anew because the
+        partner was hit by another; `exact`, pairs solved exactly.
         """
         return self._core.work()
 
