@@ -109,14 +109,15 @@ constexpr int32_t kSlots = 31;           // the last bits of a time give way to 
     const Floats s = r + (me.r + lens.blur);
     const Floats b = x * vx + y * vy + z * vz;
     const Floats v2 = vx * vx + vy * vy + vz * vz;
-    const Floats c = x * x + y * y + z * z - s * s;
+    const Floats r2 = x * x + y * y + z * z;
+    const Floats c = r2 - s * s;
     const Floats d = b * b - v2 * c;
     const Floats zero = {};
     // Refused if it is certain; what is not a number passes. Of two that fly side by side, single
     // precision does not know the relative velocity, hence whether they part.
     const float own2 = me.v[0] * me.v[0] + me.v[1] * me.v[1] + me.v[2] * me.v[2];
     const Ints touching = (c < zero) & (b * b < (v2 + 4 * own2) * lens.still);
-    const Ints refused = (d < zero) | ((b >= zero) & ~touching);
+    const Ints refused = (d < zero) | ((b >= zero) & ~touching) | (r2 == zero);  // itself
     Floats time = c / (square_root(d) - b);
     time = time >= zero ? time : zero;
     const Ints bits = (Ints(time) & ~kSlots) | slot;
