@@ -31,7 +31,8 @@ public:
         double all = 1;
         for (int a = 0; a < 3; ++a) {
             const double n = std::floor(side[a] / width);
-            if (!(n >= 4 && n <= kMost)) return false;
+            // Within fewer, two in cells side by side may be nearer the other way round.
+            if (!(n >= 5 && n <= kMost)) return false;
             n_[a] = int32_t(n);
             width_[a] = side[a] / n;
             low_[a] = mid[a] - 0.5 * side[a];

@@ -137,6 +137,7 @@ void Engine::focus() {
     lens_.fastest2 = fastest * fastest;
     lens_.farthest = 0x1p30 * cell_;
     lens_.scale = lens_.time / length;
+    lens_.start = now_;
     focused_until_ = now_ + 1.5 * epoch;
     for (size_t i = 0; i < size(); ++i) {
         const double r = spheres_[i].r;

@@ -82,6 +82,10 @@ template <class T>
     d = __builtin_shufflevector(AB, CD, CAROM_EACH_QUAD(2, 3, n + 2, n + 3));
 }
 
+// Of two far apart that barely touch, D is the difference of two numbers a million times as large:
+// no blur of a length outweighs what is lost there.
+constexpr float kAbout = 1 + 0x1p-19f;
+
 constexpr int32_t kNoTime = 0x7f800000;  // infinity, as the bits of a float
 constexpr int32_t kSlots = 31;           // the last bits of a time give way to its place in the row
 
@@ -111,7 +115,7 @@ constexpr int32_t kSlots = 31;           // the last bits of a time give way to 
     const Floats v2 = vx * vx + vy * vy + vz * vz;
     const Floats r2 = x * x + y * y + z * z;
     const Floats c = r2 - s * s;
-    const Floats d = b * b - v2 * c;
+    const Floats d = b * kAbout * b - v2 * c;
     const Floats zero = {};
     // Refused if it is certain; what is not a number passes. Of two that fly side by side, single
     // precision does not know the relative velocity, hence whether they part.
