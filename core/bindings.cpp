@@ -14,6 +14,7 @@
 #include <optional>
 #include <tuple>
 
+#include "arithmetic.hpp"
 #include "engine.hpp"
 
 namespace nb = nanobind;
@@ -102,6 +103,7 @@ auto state_of(const Engine& engine) {
     auto resting = room_for<uint8_t>(n);
     {
         const nb::gil_scoped_release release;
+        const carom::PlainArithmetic plain;
         for (size_t i = 0; i < n; ++i) {
             const carom::StartSphere s = engine.sphere(int(i));
             const double x[3] = {s.position.x, s.position.y, s.position.z};

@@ -1,28 +1,14 @@
 #include "engine.hpp"
 
-#include <cfenv>
 #include <chrono>
 #include <stdexcept>
 #include <utility>
 
+#include "arithmetic.hpp"
+
 namespace carom {
 
 namespace {
-
-// Round to nearest, no flush to zero, whatever the caller (or a library it loaded) has set.
-class PlainArithmetic {
-public:
-    PlainArithmetic() {
-        std::fegetenv(&saved_);
-        std::fesetenv(FE_DFL_ENV);
-    }
-    ~PlainArithmetic() { std::fesetenv(&saved_); }
-    PlainArithmetic(const PlainArithmetic&) = delete;
-    PlainArithmetic& operator=(const PlainArithmetic&) = delete;
-
-private:
-    std::fenv_t saved_;
-};
 
 double seconds() {
     using clock = std::chrono::steady_clock;
@@ -199,6 +185,7 @@ StartSphere Engine::sphere(int number) const {
 }
 
 double Engine::max_overlap() const {
+    const PlainArithmetic plain;
     double deepest = deepest_;
     for (size_t i = 0; shells_on_ && i < size(); ++i) {
         const Motion at = motion(int(i), user_);

@@ -2,6 +2,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "arithmetic.hpp"
 #include "engine.hpp"
 
 namespace carom {
@@ -307,6 +308,7 @@ std::string Engine::checkpoint() const {
 }
 
 void Engine::restore(const std::string& bytes) {
+    const PlainArithmetic plain;
     if (bytes.size() != checkpoint().size())
         throw std::invalid_argument("the checkpoint is of another scene, or damaged");
     Reader r(bytes);
@@ -347,6 +349,7 @@ void Engine::restore(const std::string& bytes) {
 }
 
 Overlap first_overlap(const std::vector<StartSphere>& spheres, const Vec3& period) {
+    const PlainArithmetic plain;
     Overlap worst;
     if (spheres.empty()) return worst;
     Array<Sphere> packed;
