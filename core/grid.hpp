@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "contact.hpp"
 #include "memory.hpp"
 #include "simd/kernels.hpp"
 #include "vec3.hpp"
@@ -139,7 +140,7 @@ public:
     };
     Crossing crossing(const Vec3& d, const Vec3& v, Cell at) const {
         const double from[3] = {d.x, d.y, d.z}, speed[3] = {v.x, v.y, v.z};
-        Crossing out{1e300, 0};
+        Crossing out{kNever, 0};  // of a sphere at rest
         for (int a = 0; a < 3; ++a) {
             const double wait = (std::copysign(0.5 * width_[a], speed[a]) - from[a]) / speed[a];
             const bool open = period_[a] == 0 && at.c[a] == (speed[a] > 0 ? n_[a] - 1 : 0);
