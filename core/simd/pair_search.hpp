@@ -6,7 +6,6 @@
 // earlier, and that outweighs what single precision loses.
 //
 // Included once for each instruction set; CAROM_LANES is how many numbers its registers hold.
-#include <bit>
 #include <cstdint>
 
 #include "../glance.hpp"
@@ -16,6 +15,7 @@
 #endif
 
 namespace carom::CAROM_SIMD {
+namespace {  // nothing of it may serve another instruction set
 
 constexpr int kLanes = CAROM_LANES;
 using Floats [[gnu::vector_size(4 * kLanes)]] = float;
@@ -191,8 +191,9 @@ Guess first_met(const Lens& lens, const Glance* all, const Glance& me, int32_t s
         lane = lane.with({bounds(lens, all, me, row + k, kEach + k), none});
     const Two<int32_t> two = of_all_lanes(lane);
     // Infinity has no last bits: slot 0 if nobody can be met.
-    return {two.first & kSlots, std::bit_cast<float>(two.first & ~kSlots),
-            std::bit_cast<float>(two.second & ~kSlots)};
+    return {two.first & kSlots, __builtin_bit_cast(float, two.first & ~kSlots),
+            __builtin_bit_cast(float, two.second & ~kSlots)};
 }
 
+}  // namespace
 }  // namespace carom::CAROM_SIMD
