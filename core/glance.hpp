@@ -26,12 +26,12 @@ static_assert(sizeof(Glance) == 32);
 // In what units glances are. Lengths and times are scaled by powers of two so that typical numbers
 // are near one: a gas may be in metres or in nanometres.
 struct Lens {
-    Vec3 inverse_period;    // an open axis has a period too, wider than any two neighbours are apart
-    float unit[3];          // length of one step of Glance::x
-    float tick;             // time of one step of Glance::t
-    float blur;             // added to radii: more than all errors of a distance
-    float still;            // b^2 below still * v^2: it is not sure that they part
-    float fastest2;         // faster or further than these: solve exactly
+    Vec3 inverse_period;  // an open axis has a period too, wider than any two neighbours are apart
+    float unit[3];        // length of one step of Glance::x
+    float tick;           // time of one step of Glance::t
+    float blur;           // added to radii: more than all errors of a distance
+    float still;          // b^2 below still * v^2: it is not sure that they part
+    float fastest2;       // faster or further than these: solve exactly
     double farthest;
     double start;           // when times were zero: they stay below 1.5 epochs
     double time;            // what the unit of the bounds is

@@ -128,7 +128,7 @@ int32_t collect(const GridCell* cells, const GridBlock& block, int32_t* out, int
                     if (found + 4 > room) return -1;
                     found += spheres_in(*cell, out + found);
                     if (cell->id[3] >= -1) break;
-                    cell = &cells[-2 - cell->id[3]]  /* GridCell::link */;
+                    cell = &cells[-2 - cell->id[3]] /* GridCell::link */;
                 }
             }
         }

@@ -61,12 +61,11 @@ template <class T>
 #if CAROM_LANES == 4
 #define CAROM_EACH_QUAD(a, b, c, d) a, b, c, d
 #elif CAROM_LANES == 8
-#define CAROM_EACH_QUAD(a, b, c, d) \
-    a, b, c, d, (a) + 4, (b) + 4, (c) + 4, (d) + 4
+#define CAROM_EACH_QUAD(a, b, c, d) a, b, c, d, (a) + 4, (b) + 4, (c) + 4, (d) + 4
 #else
-#define CAROM_EACH_QUAD(a, b, c, d)                                                     \
-    a, b, c, d, (a) + 4, (b) + 4, (c) + 4, (d) + 4, (a) + 8, (b) + 8, (c) + 8, (d) + 8, \
-        (a) + 12, (b) + 12, (c) + 12, (d) + 12
+#define CAROM_EACH_QUAD(a, b, c, d)                                                               \
+    a, b, c, d, (a) + 4, (b) + 4, (c) + 4, (d) + 4, (a) + 8, (b) + 8, (c) + 8, (d) + 8, (a) + 12, \
+        (b) + 12, (c) + 12, (d) + 12
 #endif
 
 // Four rows of four numbers, in each quarter of the registers, become four columns.
@@ -91,8 +90,8 @@ constexpr int32_t kSlots = 31;           // the last bits of a time give way to 
 
 // Lower bounds of the contact times with the neighbours in `id`, as bits, which order like the
 // numbers while these are positive; the last five bits say which slot.
-[[gnu::always_inline]] inline Ints bounds(const Lens& lens, const Glance* all, const Glance& me, const int32_t* id,
-                   Ints slot) {
+[[gnu::always_inline]] inline Ints bounds(const Lens& lens, const Glance* all, const Glance& me,
+                                          const int32_t* id, Ints slot) {
     const char* base = reinterpret_cast<const char*>(all);
     Floats x = gather(base, id, 0), y = gather(base, id + 1, 0), z = gather(base, id + 2, 0),
            t = gather(base, id + 3, 0);
@@ -146,27 +145,31 @@ struct Two {
     }
 };
 
-#define CAROM_PART(part, ...)                                     \
-    Two<decltype(__builtin_shufflevector(part.first, part.first, __VA_ARGS__))> { \
-        __builtin_shufflevector(part.first, part.first, __VA_ARGS__),             \
-            __builtin_shufflevector(part.second, part.second, __VA_ARGS__)        \
+using FourInts [[gnu::vector_size(16)]] = int32_t;
+using EightInts [[gnu::vector_size(32)]] = int32_t;
+
+#define CAROM_PART(Lanes, part, ...)                                              \
+    Two<Lanes> {                                                                  \
+        Lanes(__builtin_shufflevector(part.first, part.first, __VA_ARGS__)),      \
+            Lanes(__builtin_shufflevector(part.second, part.second, __VA_ARGS__)) \
     }
 
 // Folds until one lane is left.
 [[gnu::always_inline]] inline Two<int32_t> of_all_lanes(Two<Ints> all) {
 #if CAROM_LANES == 16
-    const auto eight = CAROM_PART(all, 0, 1, 2, 3, 4, 5, 6, 7)
-                           .with(CAROM_PART(all, 8, 9, 10, 11, 12, 13, 14, 15));
+    const auto eight = CAROM_PART(EightInts, all, 0, 1, 2, 3, 4, 5, 6, 7)
+                           .with(CAROM_PART(EightInts, all, 8, 9, 10, 11, 12, 13, 14, 15));
 #else
     const auto eight = all;
 #endif
 #if CAROM_LANES >= 8
-    const auto four = CAROM_PART(eight, 0, 1, 2, 3).with(CAROM_PART(eight, 4, 5, 6, 7));
+    const auto four =
+        CAROM_PART(FourInts, eight, 0, 1, 2, 3).with(CAROM_PART(FourInts, eight, 4, 5, 6, 7));
 #else
     const auto four = eight;
 #endif
-    const auto two = four.with(CAROM_PART(four, 2, 3, 0, 1));
-    const auto one = two.with(CAROM_PART(two, 1, 0, 3, 2));
+    const auto two = four.with(CAROM_PART(FourInts, four, 2, 3, 0, 1));
+    const auto one = two.with(CAROM_PART(FourInts, two, 1, 0, 3, 2));
     return {one.first[0], one.second[0]};
 }
 

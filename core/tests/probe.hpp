@@ -84,9 +84,8 @@ struct EngineProbe {
         for (int32_t& id : row) id = i;
         for (size_t k = 0; k < near.size(); ++k) row[k + 1] = near[k];
         for (const std::string& level : simd_levels()) {
-            const Guess g = kernels(level).first_met(e.lens_, e.glances_.data(),
-                                                     e.glances_[size_t(i)], i, row,
-                                                     int(near.size()));
+            const Guess g = kernels(level).first_met(
+                e.lens_, e.glances_.data(), e.glances_[size_t(i)], i, row, int(near.size()));
             CHECK(g.slot >= 0 && g.slot <= int(near.size()));
             CHECK(g.first >= 0 && g.first <= g.second);
             const double first = e.now_ + g.first * e.lens_.time,
@@ -113,8 +112,8 @@ struct EngineProbe {
             e.each_near(i, [&](int32_t j) { near.push_back(j); });
             for (size_t k = 0; k < near.size(); k += Row::kPlaces) {
                 const size_t end = std::min(near.size(), k + Row::kPlaces);
-                met += compare(e, i, {near.begin() + std::ptrdiff_t(k),
-                                      near.begin() + std::ptrdiff_t(end)});
+                met += compare(
+                    e, i, {near.begin() + std::ptrdiff_t(k), near.begin() + std::ptrdiff_t(end)});
             }
         }
         return met;
@@ -130,11 +129,12 @@ private:
         const Sphere &p = e.spheres_[size_t(i)], &q = e.spheres_[size_t(j)];
         Vec3 r = rel.r + rel.v * (e.now_ - rel.from);
         r -= nearest(r * e.inverse_period_) * e.world_.period;
-        std::printf("  now %.17g exact +%.9g bound +%.9g distance %.9g (contact %.9g) speed %.9g, "
-                    "own %.9g %.9g, cell %.9g, b %.9g, margin %.9g widening %d %d\n",
-                    e.now_, exact - e.now_, bound - e.now_, norm(r), p.r + q.r, norm(rel.v),
-                    norm(p.v), norm(q.v), e.cell_, dot(r, rel.v), e.margin_,
-                    e.gridded_ ? 0 : e.rows_.line(i).margin, e.gridded_ ? 0 : e.rows_.line(j).margin);
+        std::printf(
+            "  now %.17g exact +%.9g bound +%.9g distance %.9g (contact %.9g) speed %.9g, "
+            "own %.9g %.9g, cell %.9g, b %.9g, margin %.9g widening %d %d\n",
+            e.now_, exact - e.now_, bound - e.now_, norm(r), p.r + q.r, norm(rel.v), norm(p.v),
+            norm(q.v), e.cell_, dot(r, rel.v), e.margin_, e.gridded_ ? 0 : e.rows_.line(i).margin,
+            e.gridded_ ? 0 : e.rows_.line(j).margin);
     }
 };
 

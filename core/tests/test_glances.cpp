@@ -91,7 +91,7 @@ struct Setting {
     double around;         // open: how far from the origin
     double ratio;          // of sizes
     int grid;
-    double gap;            // between spheres
+    double gap;  // between spheres
 };
 
 // Many mean pairs in one engine, looked at from both sides, at once and some time later.
@@ -100,8 +100,8 @@ int compare_pairs(const Setting& s, uint64_t seed, int pairs, int times) {
     World world;
     const double l = s.length;
     if (s.period > 0) world.period = Vec3{1, 1, s.grid ? 1 : 1.3} * (s.period * l);
-    const double half = s.period > 0 ? 0.5 * s.period * l
-                                     : 0.5 * (1 + s.gap) * l * std::cbrt(2.0 * pairs);
+    const double half =
+        s.period > 0 ? 0.5 * s.period * l : 0.5 * (1 + s.gap) * l * std::cbrt(2.0 * pairs);
     const Vec3 middle = draw.unit() * (s.around * l);
     Tuning tuning;
     tuning.grid = s.grid;
@@ -140,9 +140,9 @@ int compare_pairs(const Setting& s, uint64_t seed, int pairs, int times) {
                 EngineProbe::place(engine, i, start, wide);
                 EngineProbe::place(engine, j, start, wide);
                 EngineProbe::refresh(engine, j, start);
-                const double until = std::min({EngineProbe::leaves(engine, i, start),
-                                               EngineProbe::leaves(engine, j, start),
-                                               start + 1.5 * epoch});
+                const double until =
+                    std::min({EngineProbe::leaves(engine, i, start),
+                              EngineProbe::leaves(engine, j, start), start + 1.5 * epoch});
                 if (!EngineProbe::neighbours(engine, i, j)) continue;
                 const double wait = n == 0 ? 0 : (until - start) * draw.small(-3);
                 EngineProbe::refresh(engine, i, start + wait);

@@ -185,8 +185,7 @@ TEST(lines_are_searched_as_they_are_defined) {
                                           dy = block.y.seen[y] - line.xy[k].second,
                                           dz = block.z.seen[z] - line.zr[k].first,
                                           r = block.minus_reach - line.zr[k].second;
-                            if (dx * dx + dy * dy + dz * dz < r * r)
-                                expected.push_back(line.id[k]);
+                            if (dx * dx + dy * dy + dz * dz < r * r) expected.push_back(line.id[k]);
                         }
                     }
         for (const std::string& level : simd_levels()) {
@@ -198,8 +197,8 @@ TEST(lines_are_searched_as_they_are_defined) {
             CHECK(out == expected);
             if (expected.size() < 4) continue;
             std::vector<int32_t> narrow(expected.size() - 1);
-            CHECK(kernels(level).near(lines.data(), block, narrow.data(),
-                                      int32_t(narrow.size())) == -1);
+            CHECK(kernels(level).near(lines.data(), block, narrow.data(), int32_t(narrow.size())) ==
+                  -1);
         }
     }
 }
@@ -233,7 +232,7 @@ TEST(the_grid_holds_what_a_map_holds) {
     const bool periodic[3] = {true, false, true};
     constexpr int n[3] = {5, 6, 7};
     Grid grid;
-    CHECK(!grid.reset(1, {}, {3, 9, 9}, periodic, 1000));      // too few cells
+    CHECK(!grid.reset(1, {}, {3, 9, 9}, periodic, 1000));       // too few cells
     CHECK(!grid.reset(1, {}, {2000, 9, 9}, periodic, 100000));  // too many along an axis
     CHECK(!grid.reset(1, {}, {100, 100, 100}, periodic, 100));  // too many
     CHECK(grid.reset(1, {}, {5.5, 6.5, 7.5}, periodic, 100));
@@ -397,8 +396,10 @@ TEST(the_calendar_returns_events_in_order) {
                 if (whole(0, 1) == 0) t = after + wait(bits);
                 if (whole(0, 50) == 0) t = after + 1e4 * wait(bits);
                 const int kind = whole(0, 3);
-                q.set(i, t, kind == 0 ? wall_code(whole(0, 5)) : kind == 1 && !gridded ? kEscape
-                                                                           : whole(0, n - 1));
+                q.set(i, t,
+                      kind == 0               ? wall_code(whole(0, 5))
+                      : kind == 1 && !gridded ? kEscape
+                                              : whole(0, n - 1));
                 if (q.events[size_t(i)].partner == i) q.events[size_t(i)].partner = wall_code(1);
                 if (gridded) q.events[size_t(i)].contact = kind == 1 ? t + 1 : t;
             };
@@ -415,7 +416,8 @@ TEST(the_calendar_returns_events_in_order) {
             int seen = 0;
             Calendar::Due due;
             while (q.next(kNever, due)) {
-                CHECK(!truth.empty() && q.key(due.id) == *truth.begin() && due.t == truth.begin()->t);
+                CHECK(!truth.empty() && q.key(due.id) == *truth.begin() &&
+                      due.t == truth.begin()->t);
                 if (truth.empty() || !(q.key(due.id) == *truth.begin())) break;
                 q.calendar.pop();
                 truth.erase(truth.begin());
