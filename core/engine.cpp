@@ -59,7 +59,7 @@ Engine::Engine(const std::vector<StartSphere>& start, double time, const World& 
         if (s.resting && falls_[i]) settle(int(i));
     }
     choose_epoch(time);
-    now_ = user_ = clock_.offset(time);
+    now_ = user_ = happened_ = clock_.offset(time);
     for (Sphere& s : spheres_) s.t = now_;
     log_start_ = time;
     log_shift_ = user_;
@@ -126,7 +126,8 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
 
     for (unsigned k = 1;; ++k) {
         if (k % 64 == 0 && seconds() > deadline) {
-            user_ = std::max(user_, now_);
+            // Who asks for no time sees none that only bookkeeping has reached.
+            user_ = std::max(user_, until < kNever ? now_ : happened_);
             return Stop::slice;
         }
         Calendar::Due due;
@@ -155,6 +156,7 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
             continue;
         }
         execute(due.id);
+        happened_ = now_;
         if (collapse_.i == kNone && collisions_ < last_collision &&
             collisions_ + wall_collisions_ < last_event && log_.size() < full)
             continue;

@@ -227,6 +227,7 @@ private:
     Clock clock_;
     double now_ = 0;                          // offset of the event in hand
     double user_ = 0;                         // offset of the time the outside sees
+    double happened_ = 0;                     // of the last physical event
     double asked_ = kNever, asked_time_ = 0;  // offset of the last `until`, and it to the bit
     int64_t epoch_events_ = 0;
 

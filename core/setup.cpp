@@ -238,6 +238,7 @@ void Engine::begin_epoch(double t) {
     for (double& touch : last_touch_) touch -= step;
     for (Watch& w : watches_) w.start -= step;
     user_ -= step;
+    happened_ -= step;
     asked_ = kNever;
     log_shift_ -= step;
     now_ = std::max(0.0, now_ - step);
@@ -343,7 +344,7 @@ void Engine::restore(const std::string& bytes) {
     }
     log_.clear();
     log_start_ = time();
-    log_shift_ = user_;
+    log_shift_ = happened_ = user_;
     build_shells();
     predict_all();
 }
