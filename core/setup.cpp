@@ -167,7 +167,8 @@ bool Engine::choose_grid(const Tuning& tuning) {
 void Engine::build_grid() {
     grid_.clear();
     for (size_t i = 0; i < size(); ++i) {
-        const Grid::Cell cell = grid_.cell_of(motion(int(i), now_).x);
+        const Vec3 x = motion(int(i), now_).x;  // may have left the box it is anchored in
+        const Grid::Cell cell = grid_.cell_of(x - whole_boxes(x) * world_.period);
         grid_.add(int32_t(i), cell);
         events_[i].cell = Grid::pack(cell);
     }
