@@ -19,6 +19,7 @@
 #include "glance.hpp"
 #include "grid.hpp"
 #include "neighbours.hpp"
+#include "profile.hpp"
 #include "rules.hpp"
 #include "spheres.hpp"
 #include "walls.hpp"
@@ -63,6 +64,7 @@ struct Tuning {         // bookkeeping only: no bit of a trajectory depends on i
     double slice = 0.05;  // seconds of work after which `advance` returns
     std::string simd;     // instruction set; "" = the best there is
     bool sort = true;     // neighbours in space become neighbours in memory
+    bool profile = false;  // ask how long each part takes
     int grid = -1;        // 1: a grid if it can be, 0: lists; -1 = chosen from the density
 };
 
@@ -97,6 +99,7 @@ public:
     StartSphere sphere(int number) const;  // at time()
     size_t bytes() const;
     const Work& work() const { return work_; }
+    const Profile& profile() const { return profile_; }
 
     // All events since the last call; `start` is the time their offsets count from.
     std::vector<Record> take_log(double& start);
@@ -122,6 +125,7 @@ private:
         int32_t partner;  // may be met first,
         double first;     // not before this time,
         double second;    // and any other not before this
+        int axis = 0;     // along which it leaves its cell
         void add(const Guess& guess, const int32_t* row, double now, double unit) {
             const double t1 = now + guess.first * unit, t2 = now + guess.second * unit;
             if (guess.slot == 0) return;
@@ -154,7 +158,6 @@ private:
 
     // engine.cpp
     Motion motion(int i, double t) const;
-    void look_ahead() const;
     bool epoch_over(const Calendar::Due& due) const;
     bool stale(const Event& event) const {
         return event.partner >= 0 && events_[size_t(event.partner)].count != event.partner_count;
@@ -173,12 +176,15 @@ private:
     void find_event(int i);
     void refresh(int i);
     Look look(int i) const;
+    void fetch_partner(const Look& look) const;
     void choose(int i, const Look& look, double& t, int32_t& partner) const;
     void decide(int i, const Look& look);
     double free_contact(int i, int32_t j) const;
-    void settle_on(int i, double t, int32_t partner, double leaves);
+    void settle_on(int i, double t, int32_t partner, double leaves, int axis);
     template <class Visit>
     void each_near(int i, const Visit& visit) const;
+    int32_t collect(const GridBlock& block, size_t first) const;
+    void look_at_exit(const Motion& at, Grid::Cell cell, Look& out) const;
     void look_through(int i, const GridBlock& block, Look& out) const;
     void change_cell(int i);
     void predict_walls(int i, Next& best) const;
@@ -202,6 +208,14 @@ private:
     void place_shell(int i, const Vec3& centre, int widening);
     void exchange(int i);
     void focus();
+
+    // ahead.cpp
+    void look_ahead() const;
+    void ask_for_rows(int i, const Event& e) const;
+    void ask_for_row_neighbours(int i, const Event& e) const;
+    GridBlock new_cells(int i, const Event& e) const;
+    void ask_for_cells(int i, const Event& e) const;
+    void ask_for_cell_neighbours(int i, const Event& e) const;
 
     // execute.cpp
     void execute(int i);
@@ -266,6 +280,7 @@ private:
     Found found_;
 
     Work work_;
+    Profile profile_;
     int64_t collisions_ = 0, wall_collisions_ = 0;
     Sum dissipated_, withheld_;
     double deepest_ = 0;
@@ -335,6 +350,17 @@ inline void Engine::refresh(int i) {
 }
 
 
+// The spheres in some cells of the grid, into near_.id from place `first` on.
+inline int32_t Engine::collect(const GridBlock& block, size_t first) const {
+    constexpr size_t kBehind = 16;  // room behind them
+    for (;;) {
+        const int32_t n = kernels_->collect(grid_.cells(), block, &near_.id[first],
+                                            int32_t(near_.id.size() - first - kBehind));
+        if (n >= 0) return n;
+        near_.id.resize(2 * near_.id.size());
+    }
+}
+
 template <class Visit>
 void Engine::each_near(int i, const Visit& visit) const {
     if (!gridded_) {
@@ -343,10 +369,7 @@ void Engine::each_near(int i, const Visit& visit) const {
         return;
     }
     const GridBlock block = grid_.around(Grid::unpack(events_[size_t(i)].cell));
-    int32_t n = -1;
-    while ((n = kernels_->collect(grid_.cells(), block, near_.id.data(),
-                                  int32_t(near_.id.size()))) < 0)
-        near_.id.resize(2 * near_.id.size());
+    const int32_t n = collect(block, 0);
     for (int32_t k = 0; k < n; ++k)
         if (near_.id[size_t(k)] != i) visit(near_.id[size_t(k)]);
 }

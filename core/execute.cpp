@@ -9,6 +9,7 @@ void Engine::execute(int i) {
     if (e.partner < 0) {
         hit_wall(i, -1 - e.partner, e.t);
         ++wall_collisions_;
+        profile_.lap(Profile::collide);
         if (crowded(i)) make_shell(i);
         predict(i);
         return;
@@ -22,8 +23,10 @@ void Engine::execute(int i) {
     else
         collide(lo, hi, first ? m : Image{} - m, e.t);
     ++collisions_;
+    profile_.lap(Profile::collide);
     if (crowded(lo)) make_shell(lo);
     if (crowded(hi)) make_shell(hi);
+    profile_.lap(Profile::rebuild);
     predict_both(lo, hi);
 }
 

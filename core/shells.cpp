@@ -35,6 +35,7 @@ void Engine::escape(int i) {
             return predict(i);
     }
     make_shell(i);
+    profile_.lap(Profile::rebuild);
     predict(i);
 }
 

@@ -75,7 +75,7 @@ struct Event {
     uint32_t partner_count = 0;  // of the partner when predicted: differs later = stale
     uint32_t count = 0;          // impulses this sphere has received
     union {
-        int32_t cell = 0;  // packed coordinates
+        uint32_t cell = 0;  // packed coordinates, and the axis of its crossing
         float shell_x;
     };
     union {
