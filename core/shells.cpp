@@ -111,7 +111,8 @@ void Engine::exchange(int i) {
 // too small or in too wide a shell: those are marked to be solved exactly.
 void Engine::focus() {
     if (!glancing_) return;
-    far_ = size() > 8000;
+    // Beyond the caches: measured where looking ahead begins to pay.
+    far_ = size() > (gridded_ ? 64000 : 20000);
     const double epoch = clock_.epoch;
     double energy = 0;
     for (const Sphere& s : spheres_) energy += norm2(s.v);
