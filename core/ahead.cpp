@@ -1,6 +1,7 @@
 // Asking memory in time: when a bucket of events is taken in hand, for what the events of the next
-// buckets will touch, each stage for a bucket nearer. Without it every event of a large system waits
-// a dozen times for memory (256 000 spheres: 1.3 to 1.5 times faster; a few thousand: no gain).
+// buckets will touch, each stage for a bucket nearer. Without it every event of a large system
+// waits a dozen times for memory (256 000 spheres: 1.3 to 1.5 times faster; a few thousand: no
+// gain).
 #include "engine.hpp"
 
 namespace carom {
@@ -30,8 +31,7 @@ void Engine::ask_for_rows(int i, const Event& e) const {
         fetch(&bodies_[size_t(k)]);
     };
     own(i);
-    if (e.partner == kEscape)
-        cells_.fetch_around(ahead(motion(i, e.t), spheres_[size_t(i)].r, 0));
+    if (e.partner == kEscape) cells_.fetch_around(ahead(motion(i, e.t), spheres_[size_t(i)].r, 0));
     if (e.partner < 0) return;
     fetch(&events_[size_t(e.partner)]);
     own(e.partner);
@@ -46,8 +46,7 @@ void Engine::ask_for_row_neighbours(int i, const Event& e) const {
             for (const int32_t j : part.ids()) fetch(&glances_[size_t(j)]);
     };
     neighbours(i);
-    if (e.partner == kEscape)
-        each_near(i, [this](int32_t j) { fetch(&rows_.line(j)); });
+    if (e.partner == kEscape) each_near(i, [this](int32_t j) { fetch(&rows_.line(j)); });
     if (e.partner < 0) return;
     fetch(&events_[size_t(e.partner)]);
     neighbours(e.partner);
@@ -82,8 +81,7 @@ void Engine::ask_for_cell_neighbours(int i, const Event& e) const {
     };
     if (next_partner(e) == kEscape) return glances(new_cells(i, e));
     glances(grid_.around(Grid::unpack(e.cell)));
-    if (e.partner >= 0)
-        glances(grid_.around(Grid::unpack(events_[size_t(e.partner)].cell)));
+    if (e.partner >= 0) glances(grid_.around(Grid::unpack(events_[size_t(e.partner)].cell)));
 }
 
 }  // namespace carom

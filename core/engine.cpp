@@ -184,8 +184,8 @@ std::vector<Record> Engine::take_log(double& start) {
 size_t Engine::bytes() const {
     const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
     return of(labels_) + of(places_) + of(spheres_) + of(bodies_) + of(events_) + of(images_) +
-           of(falls_) + of(fresh_) + of(last_touch_) + of(watches_) + of(glances_) +
-           rows_.bytes() + cells_.bytes() + calendar_.bytes();
+           of(falls_) + of(fresh_) + of(last_touch_) + of(watches_) + of(glances_) + rows_.bytes() +
+           cells_.bytes() + calendar_.bytes();
 }
 
 }  // namespace carom

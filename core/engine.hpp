@@ -61,11 +61,11 @@ struct Tuning {         // bookkeeping only: no bit of a trajectory depends on i
     double margin = 0;  // of the neighbour shells; 0 = chosen from the density
     double cell = 0;    // width of the smallest cells; 0 = chosen from the shells
     bool log = true;
-    double slice = 0.05;  // seconds of work after which `advance` returns
-    std::string simd;     // instruction set; "" = the best there is
-    bool sort = true;     // neighbours in space become neighbours in memory
+    double slice = 0.05;   // seconds of work after which `advance` returns
+    std::string simd;      // instruction set; "" = the best there is
+    bool sort = true;      // neighbours in space become neighbours in memory
     bool profile = false;  // ask how long each part takes
-    int grid = -1;        // 1: a grid if it can be, 0: lists; -1 = chosen from the density
+    int grid = -1;         // 1: a grid if it can be, 0: lists; -1 = chosen from the density
 };
 
 struct Work {  // what the engine has done; bookkeeping only
@@ -200,9 +200,7 @@ private:
     Vec3 ahead(const Motion& at, double r, int widening) const;
     void make_shell(int i);
     bool crowded(int i) const;
-    int least_widening(int i) const {
-        return spheres_[size_t(i)].r > giant_ ? 0 : least_widening_;
-    }
+    int least_widening(int i) const { return spheres_[size_t(i)].r > giant_ ? 0 : least_widening_; }
     double margin(int widening) const;
     Shell shell(int i) const;
     void place_shell(int i, const Vec3& centre, int widening);
@@ -233,7 +231,7 @@ private:
     World world_;
     Vec3 inverse_period_;
     bool gravity_ = false, periodic_ = false;
-    bool plain_ = false;  // free flight, one image, restitution 1
+    bool plain_ = false;           // free flight, one image, restitution 1
     bool shells_on_ = true;        // neighbours matter at all
     double half_period_ = kNever;  // of the shortest periodic axis
 
@@ -249,8 +247,8 @@ private:
     Array<Sphere> spheres_;
     Array<Body> bodies_;
     Array<Event> events_;
-    Array<Image> images_;  // of the events' partners, where a box is so small that it matters
-    Array<uint8_t> falls_;          // gravity acts on it: neither fixed nor resting
+    Array<Image> images_;       // of the events' partners, where a box is so small that it matters
+    Array<uint8_t> falls_;      // gravity acts on it: neither fixed nor resting
     Array<uint8_t> fresh_;      // its anchor is its last event, not the start of an epoch
     Array<double> last_touch_;  // TC model only
     Array<Watch> watches_;      // inelastic runs only
@@ -348,7 +346,6 @@ inline void Engine::refresh(int i) {
     std::memcpy(g.x, &place, sizeof place);  // at once, because it is about to be read at once
     std::memcpy(g.v, &flight, sizeof flight);
 }
-
 
 // The spheres in some cells of the grid, into near_.id from place `first` on.
 inline int32_t Engine::collect(const GridBlock& block, size_t first) const {

@@ -75,8 +75,7 @@ void Engine::consider(int i, int32_t j, Next& best) const {
     // The image is chosen from where both are now.
     const Vec3 here = flown(rel.r, rel.v, rel.a, now_ - rel.from);
     if (several_images_) {
-        const double reach =
-            spheres_[size_t(i)].r + spheres_[size_t(j)].r + 4 * margin(widest_);
+        const double reach = spheres_[size_t(i)].r + spheres_[size_t(j)].r + 4 * margin(widest_);
         if (reach >= half_period_) {
             const Span x = images_within(here.x, reach, inverse_period_.x),
                        y = images_within(here.y, reach, inverse_period_.y),
@@ -160,8 +159,8 @@ inline void Engine::settle_on(int i, double t, int32_t partner, double leaves, i
     if (gridded_) {
         // Further than this, single precision may mistake who is first: look again at the crossing.
         const double wait = t - now_, most = 64 * cell_;
-        const bool far = t < kNever && escapes &&
-                         wait * wait * norm2(spheres_[size_t(i)].v) > most * most;
+        const bool far =
+            t < kNever && escapes && wait * wait * norm2(spheres_[size_t(i)].v) > most * most;
         e.contact = far ? kNever : t;
         e.cell = Grid::pack(Grid::unpack(e.cell), axis);
         partner = far ? kEscape : partner;
@@ -224,13 +223,14 @@ inline void Engine::decide(int i, const Look& look) {
 }
 
 inline void Engine::choose(int i, const Look& look, double& t, int32_t& partner) const {
-    // On a grid what is met later is known for good, so that a crossing need look at new cells only.
+    // On a grid what is met later is known for good, so that a crossing need look at new cells
+    // only.
     const double leaves = gridded_ ? kNever : look.leaves;
     double limit = std::min(t, leaves);
     if (look.first < kNever && look.first <= limit && look.partner != i) {
         const double met = free_contact(i, look.partner);
-        if (met < t || (met == t && t < kNever &&
-                        precedes(i, {met, look.partner, {}}, {t, partner, {}}))) {
+        if (met < t ||
+            (met == t && t < kNever && precedes(i, {met, look.partner, {}}, {t, partner, {}}))) {
             t = met;
             partner = look.partner;
             limit = std::min(t, leaves);
