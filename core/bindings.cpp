@@ -14,6 +14,7 @@
 #include <optional>
 #include <tuple>
 
+#include "arithmetic.hpp"
 #include "engine.hpp"
 
 namespace nb = nanobind;
@@ -74,8 +75,7 @@ auto make_engine(const Vectors& position, const Vectors& velocity, const Numbers
                  const Images& image, const Counts& count, double time, const Three& period,
                  const WallRows& walls, double restitution, double contact_time,
                  const Three& gravity, bool collide, double margin, double cell, bool log,
-                 double slice, const std::string& simd, bool sort, int grid,
-                 bool profile) {
+                 double slice, const std::string& simd, bool sort, int grid, bool profile) {
     std::vector<carom::StartSphere> start = spheres(position, radius, fixed);
     const size_t n = start.size();
     if (velocity.shape(0) != n || mass.shape(0) != n || resting.shape(0) != n ||
@@ -91,8 +91,8 @@ auto make_engine(const Vectors& position, const Vectors& velocity, const Numbers
     const carom::World world{three(period), walls_from(walls), restitution,
                              contact_time,  three(gravity),    collide};
     const nb::gil_scoped_release release;
-    return std::make_unique<Engine>(start, time, world, 
-                                    carom::Tuning{margin, cell, log, slice, simd, sort, profile, grid});
+    return std::make_unique<Engine>(
+        start, time, world, carom::Tuning{margin, cell, log, slice, simd, sort, profile, grid});
 }
 
 auto state_of(const Engine& engine) {
@@ -103,6 +103,7 @@ auto state_of(const Engine& engine) {
     auto resting = room_for<uint8_t>(n);
     {
         const nb::gil_scoped_release release;
+        const carom::PlainArithmetic plain;
         for (size_t i = 0; i < n; ++i) {
             const carom::StartSphere s = engine.sphere(int(i));
             const double x[3] = {s.position.x, s.position.y, s.position.z};
@@ -141,8 +142,7 @@ NB_MODULE(_core, m) {
              nb::arg("restitution"), nb::arg("contact_time"), nb::arg("gravity"),
              nb::arg("collide"), nb::arg("margin") = 0.0, nb::arg("cell") = 0.0,
              nb::arg("log") = true, nb::arg("slice") = 0.05, nb::arg("simd") = "",
-             nb::arg("sort") = true, nb::arg("grid") = -1,
-             nb::arg("profile") = false)
+             nb::arg("sort") = true, nb::arg("grid") = -1, nb::arg("profile") = false)
         .def(
             "advance",
             [](Engine& e, double until, int64_t max_collisions, int64_t max_events) {

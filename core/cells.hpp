@@ -106,7 +106,7 @@ private:
     using Line = CellLine;
     struct Level {
         Vec3 inverse_width;
-        double steps[3];          // of a cell's width: 255 along the widest axis
+        double steps[3];  // of a cell's width: 255 along the widest axis
         double steps_per_length;
         int64_t n[3];   // cells per axis
         int64_t first;  // index of its first line
@@ -240,7 +240,8 @@ private:
              const ShellOf& shell_of, Found& out) const {
         const auto each = [](const Range& r, auto visit) {
             int64_t slot = r.first;
-            for (int64_t k = 0; k < r.count; ++k, slot = slot + 1 == r.n ? 0 : slot + 1) visit(slot);
+            for (int64_t k = 0; k < r.count; ++k, slot = slot + 1 == r.n ? 0 : slot + 1)
+                visit(slot);
         };
         const auto look = [&](int64_t slot) {
             for (auto at = int32_t(slot); at >= 0; at = lines_[size_t(at)].next) {
@@ -306,7 +307,6 @@ private:
             return;
         }
     }
-
 
     double width_ = 1;
     Vec3 period_, inverse_period_, extent_;

@@ -52,7 +52,7 @@ void Engine::check_shell(int i) const {
     for (const int32_t j : found.ids()) {
         const Shell other = shell(j);
         const double near = own.reach + other.reach;
-        if (j == i || cells_.distance2(own.centre, other.centre) >= near * near) continue;
+        if (j == i || !(cells_.distance2(own.centre, other.centre) < near * near)) continue;
         demand(known(i, j) == 1, "a row misses a neighbour");
     }
     for (const Row& row : rows_.of(i))

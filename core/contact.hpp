@@ -24,7 +24,7 @@ inline double contact_time(const Vec3& r, const Vec3& v, double sigma) {
     if (b >= 0) return kNever;
     const double sigma2 = sigma * sigma;
     const double d = norm2(v) * sigma2 - norm2(cross(r, v));
-    if (d <= 0) return kNever;
+    if (!(d > 0)) return kNever;  // nor do two so far apart that a square overflows
     const double t = (norm2(r) - sigma2) / (std::sqrt(d) - b);
     return t > 0 ? t : 0;
 }

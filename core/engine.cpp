@@ -1,27 +1,13 @@
 #include "engine.hpp"
 
-#include <cfenv>
 #include <stdexcept>
 #include <utility>
+
+#include "arithmetic.hpp"
 
 namespace carom {
 
 namespace {
-
-// Round to nearest, no flush to zero, whatever the caller (or a library it loaded) has set.
-class PlainArithmetic {
-public:
-    PlainArithmetic() {
-        std::fegetenv(&saved_);
-        std::fesetenv(FE_DFL_ENV);
-    }
-    ~PlainArithmetic() { std::fesetenv(&saved_); }
-    PlainArithmetic(const PlainArithmetic&) = delete;
-    PlainArithmetic& operator=(const PlainArithmetic&) = delete;
-
-private:
-    std::fenv_t saved_;
-};
 
 constexpr size_t kLogCapacity = size_t(1) << 17;
 
@@ -160,6 +146,7 @@ StartSphere Engine::sphere(int number) const {
 }
 
 double Engine::max_overlap() const {
+    const PlainArithmetic plain;
     double deepest = deepest_;
     for (size_t i = 0; shells_on_ && i < size(); ++i) {
         const Motion at = motion(int(i), user_);

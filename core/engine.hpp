@@ -111,6 +111,7 @@ public:
     void check() const;  // throws std::logic_error if a structure contradicts another
 
 private:
+    friend struct EngineProbe;  // core/tests
     struct Motion {
         Vec3 x, v;
     };
@@ -332,7 +333,9 @@ inline void Engine::refresh(int i) {
     const double scale = lens_.scale;
     Glance& g = glances_[size_t(i)];
     const float vx = float(s.v.x * scale), vy = float(s.v.y * scale), vz = float(s.v.z * scale);
-    bool clear = vx * vx + vy * vy + vz * vz < lens_.fastest2;
+    const float v2 = vx * vx + vy * vy + vz * vz;
+    bool clear = v2 < lens_.fastest2 && g.r > 0;
+    if (v2 < 0x1p-60f) clear = clear && s.v.x == 0 && s.v.y == 0 && s.v.z == 0;
     if (!gridded_) {
         const double far = std::abs(here.x) + std::abs(here.y) + std::abs(here.z);
         clear = clear && far < lens_.farthest && rows_.line(i).margin <= 4;
@@ -341,7 +344,7 @@ inline void Engine::refresh(int i) {
     using FourFloats [[gnu::vector_size(16)]] = float;
     const Four place{steps(here.x, lens_.inverse_period.x), steps(here.y, lens_.inverse_period.y),
                      steps(here.z, lens_.inverse_period.z),
-                     int32_t(uint32_t(int64_t(now_ * lens_.ticks_per_time)))};
+                     int32_t((now_ - lens_.start) * lens_.ticks_per_time)};
     const FourFloats flight{clear ? vx : std::numeric_limits<float>::quiet_NaN(), vy, vz, g.r};
     std::memcpy(g.x, &place, sizeof place);  // at once, because it is about to be read at once
     std::memcpy(g.v, &flight, sizeof flight);

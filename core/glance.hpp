@@ -5,6 +5,7 @@
 // of a trajectory depends on how glances are compared: with which instructions, in which order.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "vec3.hpp"
@@ -25,22 +26,25 @@ static_assert(sizeof(Glance) == 32);
 // In what units glances are. Lengths and times are scaled by powers of two so that typical numbers
 // are near one: a gas may be in metres or in nanometres.
 struct Lens {
-    Vec3 inverse_period;    // an open axis has a period too, wider than any two neighbours are apart
-    float unit[3];          // length of one step of Glance::x
-    float tick;             // time of one step of Glance::t
-    float blur;             // added to radii: more than all errors of a distance
-    float still;            // b^2 below still * v^2: it is not sure that they part
-    float fastest2;         // faster or further than these: solve exactly
+    Vec3 inverse_period;  // an open axis has a period too, wider than any two neighbours are apart
+    float unit[3];        // length of one step of Glance::x
+    float tick;           // time of one step of Glance::t
+    float blur;           // added to radii: more than all errors of a distance
+    float still;          // b^2 below still * v^2: it is not sure that they part
+    float fastest2;       // faster or further than these: solve exactly
     double farthest;
+    double start;           // when times were zero: they stay below 1.5 epochs
     double time;            // what the unit of the bounds is
     double scale;           // from velocities to Glance::v
     double ticks_per_time;  // 1 / (tick * time)
 };
 
-// Steps from the centre of the period, wrapped around.
+// Steps from the centre of the period, wrapped around. (Of what is too far for `nearest`, and will
+// be solved exactly, it makes some whole number: the order of arguments tells what of a NaN.)
 inline int32_t steps(double x, double inverse_period) {
     const double boxes = x * inverse_period;
-    return int32_t(uint32_t(int64_t((boxes - nearest(boxes)) * 0x1p32)));
+    const double part = std::max(-0.5, std::min(0.5, boxes - nearest(boxes)));
+    return int32_t(uint32_t(int64_t(part * 0x1p32)));
 }
 
 // Who of a row of neighbours may be met first, and before when nobody else is. Times in units of

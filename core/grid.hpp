@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "contact.hpp"
 #include "memory.hpp"
 #include "simd/kernels.hpp"
 #include "vec3.hpp"
@@ -21,11 +22,12 @@ public:
         int32_t c[3];
     };
     static uint32_t pack(Cell a, int axis) {
-        return uint32_t(a.c[0] | a.c[1] << kBits | a.c[2] << (2 * kBits)) |
-               uint32_t(axis) << (3 * kBits);
+        return uint32_t(a.c[0] | a.c[1] << kBits | a.c[2] << (2 * kBits)) | uint32_t(axis)
+                                                                                << (3 * kBits);
     }
     static Cell unpack(uint32_t p) {
-        return {{int32_t(p & kMost), int32_t(p >> kBits & kMost), int32_t(p >> (2 * kBits) & kMost)}};
+        return {
+            {int32_t(p & kMost), int32_t(p >> kBits & kMost), int32_t(p >> (2 * kBits) & kMost)}};
     }
     static int axis(uint32_t p) { return int(p >> (3 * kBits)); }
 
@@ -37,7 +39,8 @@ public:
         double all = 1;
         for (int a = 0; a < 3; ++a) {
             const double n = std::floor(side[a] / width);
-            if (!(n >= 4 && n <= kMost)) return false;
+            // Within fewer, two in cells side by side may be nearer the other way round.
+            if (!(n >= 5 && n <= kMost)) return false;
             n_[a] = int32_t(n);
             width_[a] = side[a] / n;
             half_[a] = 0.5 * width_[a];
@@ -145,11 +148,11 @@ public:
     };
     Crossing crossing(const Vec3& d, const Vec3& v, Cell at) const {
         const double from[3] = {d.x, d.y, d.z}, speed[3] = {v.x, v.y, v.z};
-        Crossing out{1e300, 0};
+        Crossing out{kNever, 0};       // of a sphere at rest
         for (int a = 0; a < 3; ++a) {  // no branches: nothing here can be foreseen
             double wait = (std::copysign(half_[a], speed[a]) - from[a]) / speed[a];
-            wait = speed[a] != 0 ? wait : 1e300;
-            if (period_[a] == 0 && at.c[a] == (speed[a] > 0 ? n_[a] - 1 : 0)) wait = 1e300;
+            wait = speed[a] != 0 ? wait : kNever;
+            if (period_[a] == 0 && at.c[a] == (speed[a] > 0 ? n_[a] - 1 : 0)) wait = kNever;
             out.axis = wait < out.wait ? a : out.axis;
             out.wait = wait < out.wait ? wait : out.wait;
         }

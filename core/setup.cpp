@@ -2,6 +2,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "arithmetic.hpp"
 #include "engine.hpp"
 
 namespace carom {
@@ -9,8 +10,8 @@ namespace carom {
 namespace {
 
 constexpr double kSpherical = 4.18879020478639098;  // 4 pi / 3
-constexpr double kDilute = 0.3;                    // packing fraction up to which a grid is faster
-constexpr double kPerCell = 0.8;                      // spheres in a cell of it
+constexpr double kDilute = 0.3;                     // packing fraction up to which a grid is faster
+constexpr double kPerCell = 0.8;                    // spheres in a cell of it
 
 double median_radius(const Array<Sphere>& spheres) {
     std::vector<double> r;
@@ -307,6 +308,7 @@ std::string Engine::checkpoint() const {
 }
 
 void Engine::restore(const std::string& bytes) {
+    const PlainArithmetic plain;
     if (bytes.size() != checkpoint().size())
         throw std::invalid_argument("the checkpoint is of another scene, or damaged");
     Reader r(bytes);
@@ -347,6 +349,7 @@ void Engine::restore(const std::string& bytes) {
 }
 
 Overlap first_overlap(const std::vector<StartSphere>& spheres, const Vec3& period) {
+    const PlainArithmetic plain;
     Overlap worst;
     if (spheres.empty()) return worst;
     Array<Sphere> packed;

@@ -87,8 +87,7 @@ void Engine::exchange(int i) {
             fetch(&rows_.line(old.id[std::countr_zero(left)]));
         for (uint32_t left = d.fresh; left != 0; left &= left - 1)
             fetch(&rows_.line(now[size_t(std::countr_zero(left))]));
-        for (; d.gone != 0; d.gone &= d.gone - 1)
-            rows_.remove(old.id[std::countr_zero(d.gone)], i);
+        for (; d.gone != 0; d.gone &= d.gone - 1) rows_.remove(old.id[std::countr_zero(d.gone)], i);
         for (; d.fresh != 0; d.fresh &= d.fresh - 1)
             rows_.add(now[size_t(std::countr_zero(d.fresh))], i);
     } else {
@@ -139,6 +138,7 @@ void Engine::focus() {
     lens_.fastest2 = fastest * fastest;
     lens_.farthest = 0x1p30 * cell_;
     lens_.scale = lens_.time / length;
+    lens_.start = now_;
     focused_until_ = now_ + 1.5 * epoch;
     for (size_t i = 0; i < size(); ++i) {
         const double r = spheres_[i].r;

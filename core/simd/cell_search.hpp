@@ -10,6 +10,7 @@
 #endif
 
 namespace carom::CAROM_SIMD {
+namespace {  // nothing of it may serve another instruction set
 
 using Eight [[gnu::vector_size(32)]] = int32_t;
 using EightPairs [[gnu::vector_size(32)]] = int16_t;
@@ -176,7 +177,7 @@ int32_t collect(const GridCell* cells, const GridBlock& block, int32_t* out, int
                     if (found + 4 > room) return -1;
                     found += spheres_in(*cell, out + found);
                     if (cell->id[3] >= -1) break;
-                    cell = &cells[GridCell::link(cell->id[3])];
+                    cell = &cells[-2 - cell->id[3]] /* GridCell::link */;
                 }
             }
         }
@@ -204,4 +205,5 @@ Difference difference(const int32_t* row, int n, const int32_t* now, int n_now) 
     return {~(held >> 1) & ((uint32_t(1) << n) - 1), fresh};
 }
 
+}  // namespace
 }  // namespace carom::CAROM_SIMD

@@ -6,7 +6,6 @@
 // earlier, and that outweighs what single precision loses.
 //
 // Included once for each instruction set; CAROM_LANES is how many numbers its registers hold.
-#include <bit>
 #include <cstdint>
 
 #include "../glance.hpp"
@@ -16,6 +15,7 @@
 #endif
 
 namespace carom::CAROM_SIMD {
+namespace {  // nothing of it may serve another instruction set
 
 constexpr int kLanes = CAROM_LANES;
 using Floats [[gnu::vector_size(4 * kLanes)]] = float;
@@ -23,8 +23,8 @@ using Ints [[gnu::vector_size(4 * kLanes)]] = int32_t;
 using Words [[gnu::vector_size(4 * kLanes)]] = uint32_t;
 using Quad [[gnu::vector_size(16)]] = float;
 
-// c / (sqrt(d) - b), or a little less: estimates good to 12 bits are quicker than root and quotient,
-// and a bound may be low.
+// c / (sqrt(d) - b), or a little less: estimates good to 12 bits are quicker than root and
+// quotient, and a bound may be low.
 [[gnu::always_inline]] inline Floats quotient(Floats c, Floats d, Floats b) {
 #if CAROM_LANES == 16
     const Floats root = d * (Floats)_mm512_maskz_rsqrt14_ps(0xffff, (__m512)d);
@@ -61,12 +61,11 @@ using Quad [[gnu::vector_size(16)]] = float;
 #if CAROM_LANES == 4
 #define CAROM_EACH_QUAD(a, b, c, d) a, b, c, d
 #elif CAROM_LANES == 8
-#define CAROM_EACH_QUAD(a, b, c, d) \
-    a, b, c, d, (a) + 4, (b) + 4, (c) + 4, (d) + 4
+#define CAROM_EACH_QUAD(a, b, c, d) a, b, c, d, (a) + 4, (b) + 4, (c) + 4, (d) + 4
 #else
-#define CAROM_EACH_QUAD(a, b, c, d)                                                     \
-    a, b, c, d, (a) + 4, (b) + 4, (c) + 4, (d) + 4, (a) + 8, (b) + 8, (c) + 8, (d) + 8, \
-        (a) + 12, (b) + 12, (c) + 12, (d) + 12
+#define CAROM_EACH_QUAD(a, b, c, d)                                                               \
+    a, b, c, d, (a) + 4, (b) + 4, (c) + 4, (d) + 4, (a) + 8, (b) + 8, (c) + 8, (d) + 8, (a) + 12, \
+        (b) + 12, (c) + 12, (d) + 12
 #endif
 
 // Four rows of four numbers, in each quarter of the registers, become four columns.
@@ -82,13 +81,17 @@ using Quad [[gnu::vector_size(16)]] = float;
     d = __builtin_shufflevector(AB, CD, CAROM_EACH_QUAD(2, 3, n + 2, n + 3));
 }
 
+// Of two far apart that barely touch, D is the difference of two numbers a million times as large:
+// no blur of a length outweighs what is lost there.
+constexpr float kAbout = 1 + 0x1p-19f;
+
 constexpr int32_t kNoTime = 0x7f800000;  // infinity, as the bits of a float
 constexpr int32_t kSlots = 31;           // the last bits of a time give way to its place in the row
 
 // Lower bounds of the contact times with the neighbours in `id`, as bits, which order like the
 // numbers while these are positive; the last five bits say which slot.
-[[gnu::always_inline]] inline Ints bounds(const Lens& lens, const Glance* all, const Glance& me, const int32_t* id,
-                   Ints slot) {
+[[gnu::always_inline]] inline Ints bounds(const Lens& lens, const Glance* all, const Glance& me,
+                                          const int32_t* id, Ints slot) {
     const char* base = reinterpret_cast<const char*>(all);
     Floats x = gather(base, id, 0), y = gather(base, id + 1, 0), z = gather(base, id + 2, 0),
            t = gather(base, id + 3, 0);
@@ -111,7 +114,7 @@ constexpr int32_t kSlots = 31;           // the last bits of a time give way to 
     const Floats v2 = vx * vx + vy * vy + vz * vz;
     const Floats r2 = x * x + y * y + z * z;
     const Floats c = r2 - s * s;
-    const Floats d = b * b - v2 * c;
+    const Floats d = b * kAbout * b - v2 * c;
     const Floats zero = {};
     // Refused if it is certain; what is not a number passes. Of two that fly side by side, single
     // precision does not know the relative velocity, hence whether they part.
@@ -142,27 +145,31 @@ struct Two {
     }
 };
 
-#define CAROM_PART(part, ...)                                     \
-    Two<decltype(__builtin_shufflevector(part.first, part.first, __VA_ARGS__))> { \
-        __builtin_shufflevector(part.first, part.first, __VA_ARGS__),             \
-            __builtin_shufflevector(part.second, part.second, __VA_ARGS__)        \
+using FourInts [[gnu::vector_size(16)]] = int32_t;
+using EightInts [[gnu::vector_size(32)]] = int32_t;
+
+#define CAROM_PART(Lanes, part, ...)                                              \
+    Two<Lanes> {                                                                  \
+        Lanes(__builtin_shufflevector(part.first, part.first, __VA_ARGS__)),      \
+            Lanes(__builtin_shufflevector(part.second, part.second, __VA_ARGS__)) \
     }
 
 // Folds until one lane is left.
 [[gnu::always_inline]] inline Two<int32_t> of_all_lanes(Two<Ints> all) {
 #if CAROM_LANES == 16
-    const auto eight = CAROM_PART(all, 0, 1, 2, 3, 4, 5, 6, 7)
-                           .with(CAROM_PART(all, 8, 9, 10, 11, 12, 13, 14, 15));
+    const auto eight = CAROM_PART(EightInts, all, 0, 1, 2, 3, 4, 5, 6, 7)
+                           .with(CAROM_PART(EightInts, all, 8, 9, 10, 11, 12, 13, 14, 15));
 #else
     const auto eight = all;
 #endif
 #if CAROM_LANES >= 8
-    const auto four = CAROM_PART(eight, 0, 1, 2, 3).with(CAROM_PART(eight, 4, 5, 6, 7));
+    const auto four =
+        CAROM_PART(FourInts, eight, 0, 1, 2, 3).with(CAROM_PART(FourInts, eight, 4, 5, 6, 7));
 #else
     const auto four = eight;
 #endif
-    const auto two = four.with(CAROM_PART(four, 2, 3, 0, 1));
-    const auto one = two.with(CAROM_PART(two, 1, 0, 3, 2));
+    const auto two = four.with(CAROM_PART(FourInts, four, 2, 3, 0, 1));
+    const auto one = two.with(CAROM_PART(FourInts, two, 1, 0, 3, 2));
     return {one.first[0], one.second[0]};
 }
 
@@ -187,8 +194,9 @@ Guess first_met(const Lens& lens, const Glance* all, const Glance& me, int32_t s
         lane = lane.with({bounds(lens, all, me, row + k, kEach + k), none});
     const Two<int32_t> two = of_all_lanes(lane);
     // Infinity has no last bits: slot 0 if nobody can be met.
-    return {two.first & kSlots, std::bit_cast<float>(two.first & ~kSlots),
-            std::bit_cast<float>(two.second & ~kSlots)};
+    return {two.first & kSlots, __builtin_bit_cast(float, two.first & ~kSlots),
+            __builtin_bit_cast(float, two.second & ~kSlots)};
 }
 
+}  // namespace
 }  // namespace carom::CAROM_SIMD

@@ -1,9 +1,14 @@
 // The event loop under the sanitizers, its structures compared after every slice.
+#include <cfenv>
+#include <memory>
 #include <random>
 #include <stdexcept>
 
-#include "../engine.hpp"
-#include "check.hpp"
+#if defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+#include "probe.hpp"
 
 using namespace carom;
 
@@ -44,14 +49,8 @@ double energy(const Engine& engine, const Vec3& g = {}) {
     return sum;
 }
 
-// Runs to `until`, checking the structures on the way; returns a hash of the final bits.
-uint64_t run(Engine& engine, double until) {
-    Stop stop = Stop::slice;
-    while (stop == Stop::slice || stop == Stop::count) {
-        stop = engine.advance(until, INT64_MAX / 4, 500);
-        engine.check();
-    }
-    CHECK(stop == Stop::time);
+// A hash of the bits.
+uint64_t hash_of(const Engine& engine) {
     uint64_t hash = 1469598103934665603ull;
     for (size_t i = 0; i < engine.size(); ++i) {
         const StartSphere s = engine.sphere(int(i));
@@ -66,6 +65,36 @@ uint64_t run(Engine& engine, double until) {
     return hash;
 }
 
+// Runs to `until`, checking the structures and what glances say on the way; returns a hash of the
+// final bits.
+uint64_t run(Engine& engine, double until) {
+    Stop stop = Stop::slice;
+    while (stop == Stop::slice || stop == Stop::count) {
+        stop = engine.advance(until, INT64_MAX / 4, 500);
+        engine.check();
+        EngineProbe::compare_all(engine);
+    }
+    CHECK(stop == Stop::time);
+    return hash_of(engine);
+}
+
+// How an engine may keep its books.
+std::vector<Tuning> every_tuning() {
+    std::vector<Tuning> all;
+    for (const std::string& simd : simd_levels())
+        for (const int grid : {0, 1})
+            for (const bool sort : {true, false}) {
+                Tuning tuning;
+                tuning.simd = simd;
+                tuning.grid = grid;
+                tuning.sort = sort;
+                all.push_back(tuning);
+            }
+    all.push_back({0.05, 0, false, 1e-3, "", true, 0});
+    all.push_back({0.8, 5, true, 0.05, "", true, 0});
+    return all;
+}
+
 }  // namespace
 
 TEST(energy_is_kept_and_bits_do_not_depend_on_bookkeeping) {
@@ -76,8 +105,7 @@ TEST(energy_is_kept_and_bits_do_not_depend_on_bookkeeping) {
         else
             world.walls = box(9, 1);
         uint64_t first = 0;
-        for (const Tuning& tuning :
-             {Tuning{}, Tuning{0.05, 0, false, 1e-3}, Tuning{0.8, 5, true}}) {
+        for (const Tuning& tuning : every_tuning()) {
             Engine engine(lattice(6, 1.3, 11), 0, world, tuning);
             const double before = energy(engine);
             const uint64_t bits = run(engine, 20);
@@ -88,6 +116,98 @@ TEST(energy_is_kept_and_bits_do_not_depend_on_bookkeeping) {
             CHECK(bits == first);
         }
     }
+}
+
+TEST(bits_do_not_depend_on_the_order_in_memory) {
+    World world;
+    world.period = {15, 15, 15};
+    uint64_t first = 0;
+    for (Tuning tuning : every_tuning()) {
+        if (tuning.simd != simd_levels().back()) continue;
+        Engine engine(lattice(11, 1.35, 8), 0, world, tuning);
+        Stop stop = Stop::slice;
+        while (stop == Stop::slice) stop = engine.advance(3, INT64_MAX / 4, INT64_MAX / 4);
+        engine.check();
+        EngineProbe::compare_all(engine);
+        CHECK(engine.collisions() > 2000);
+        const uint64_t bits = hash_of(engine);
+        if (first == 0) first = bits;
+        CHECK(bits == first);
+    }
+}
+
+TEST(bits_do_not_depend_on_the_mode_of_arithmetic) {
+    World world;
+    world.walls = box(9, 1);
+    const auto story = [&](const auto& set) {
+        const auto in_mode = [&](const auto& act) {
+            std::fenv_t before;
+            std::fegetenv(&before);
+            set();
+            act();
+            std::fesetenv(&before);
+        };
+        std::vector<StartSphere> spheres = lattice(4, 1.4, 6);
+        for (StartSphere& s : spheres) s.velocity.z *= 1e-310;  // what flushing would make zero
+        std::unique_ptr<Engine> engine;
+        in_mode([&] { engine = std::make_unique<Engine>(spheres, 0.1, world, Tuning{}); });
+        std::vector<uint64_t> hashes;
+        for (const double until : {3.3, 7.7}) {
+            in_mode([&] { engine->advance(until, INT64_MAX / 4, INT64_MAX / 4); });
+            hashes.push_back(hash_of(*engine));
+            std::string saved = engine->checkpoint();
+            in_mode([&] { engine = std::make_unique<Engine>(spheres, 0.1, world, Tuning{}); });
+            in_mode([&] { engine->restore(saved); });
+        }
+        return hashes;
+    };
+    const std::vector<uint64_t> plain = story([] {});
+    CHECK(plain[0] != plain[1]);
+    for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO})
+        CHECK(story([mode] { std::fesetround(mode); }) == plain);
+#if defined(__SSE2__)
+    CHECK(story([] { _mm_setcsr(_mm_getcsr() | 0x8040); }) == plain);  // flush to zero, both ways
+#endif
+}
+
+TEST(far_away_and_for_ever) {
+    for (const double far : {0.0, 1e9, 1e15, 1e40, 1e300})
+        for (const double fast : {1.0, 1e12, 1e-20}) {
+            std::vector<StartSphere> spheres = lattice(3, 1.5, 7);
+            spheres[5].position.x = far + 10;
+            spheres[6].position = {-far, far / 3 + 10, 20};
+            spheres[7].velocity = spheres[7].velocity * fast;
+            Engine engine(spheres, 0, World{}, Tuning{});
+            run(engine, 100);
+            Stop stop = Stop::slice;
+            for (int n = 0; n < 1000 && (stop == Stop::slice || stop == Stop::count); ++n)
+                stop = engine.advance(kNever, INT64_MAX / 4, 100000);
+            CHECK(stop == Stop::idle);
+            engine.check();
+        }
+}
+
+TEST(nothing_moves_on_a_grid) {
+    World world;
+    world.walls = box(9, 1);
+    std::vector<StartSphere> spheres = lattice(5, 1.5, 7);
+    for (StartSphere& s : spheres) s.velocity = {};
+    Tuning tuning;
+    tuning.grid = 1;
+    Engine engine(spheres, 0, world, tuning);
+    CHECK(EngineProbe::gridded(engine));
+    CHECK(engine.advance(kNever, INT64_MAX / 4, 1000) == Stop::idle);
+    engine.check();
+}
+
+TEST(an_unknown_instruction_set_is_refused) {
+    bool refused = false;
+    try {
+        kernels("abacus");
+    } catch (const std::invalid_argument& error) {
+        refused = std::string(error.what()).find("baseline") != std::string::npos;
+    }
+    CHECK(refused);
 }
 
 TEST(an_expanding_cloud_costs_ever_less) {

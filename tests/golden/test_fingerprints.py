@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from carom._core import simd_levels
 from carom.engine import FastEngine, Stop
 from carom.state import State
 from carom.world import WALL, World
@@ -50,9 +51,9 @@ def world(scene: dict[str, Any]) -> World:
     )
 
 
-def fingerprint(scene: dict[str, Any]) -> str:
+def fingerprint(scene: dict[str, Any], **bookkeeping: Any) -> str:
     """Digest of the state and of who met whom, after the scene's number of events."""
-    engine = FastEngine(start(scene), world(scene))
+    engine = FastEngine(start(scene), world(scene), **bookkeeping)
     records, stop, left = [], Stop.SLICE, scene["events"]
     while stop is Stop.SLICE:
         stop = engine.advance(math.inf, max_events=left)
@@ -68,9 +69,49 @@ def fingerprint(scene: dict[str, Any]) -> str:
     return digest.hexdigest()
 
 
-@pytest.mark.parametrize("name", STORED)
+each_scene = pytest.mark.parametrize("name", STORED)
+
+
+@each_scene
 def test_the_path_is_the_stored_one(name):
     assert fingerprint(STORED[name]) == STORED[name]["sha256"]
+
+
+@each_scene
+@pytest.mark.parametrize("simd", simd_levels())
+@pytest.mark.parametrize("grid", [0, 1])
+@pytest.mark.parametrize("sort", [False, True])
+def test_with_every_instruction_set_on_a_grid_or_in_lists_sorted_or_not(name, simd, grid, sort):
+    path = fingerprint(STORED[name], simd=simd, grid=grid, sort=sort)
+    assert path == STORED[name]["sha256"]
+
+
+@each_scene
+@pytest.mark.parametrize(
+    "bookkeeping",
+    [{"margin": 0.1}, {"margin": 0.7, "cell": 6.0}, {"cell": 3.0, "grid": 1}],
+    ids=str,
+)
+def test_with_other_shells_and_cells(name, bookkeeping):
+    assert fingerprint(STORED[name], **bookkeeping) == STORED[name]["sha256"]
+
+
+def test_scenes_sort_and_use_the_grid():
+    """Of what is compared above something is there to compare."""
+    sizes = [len(scene["spheres"]) for scene in STORED.values()]
+    assert len(sizes) >= 10
+    assert sum(size >= 1024 for size in sizes) >= 2
+    assert sum(uses_grid(scene) for scene in STORED.values()) >= 3
+
+
+def uses_grid(scene: dict[str, Any]) -> bool:
+    """Whether the engine does something else when told to use a grid."""
+    did = []
+    for grid in (0, 1):
+        engine = FastEngine(start(scene), world(scene), grid=grid)
+        engine.advance(math.inf, max_events=scene["events"] // 4)
+        did.append(engine.work())
+    return did[0] != did[1]
 
 
 def written(scenes: dict[str, Any]) -> str:
