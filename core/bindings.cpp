@@ -75,7 +75,7 @@ auto make_engine(const Vectors& position, const Vectors& velocity, const Numbers
                  const Images& image, const Counts& count, double time, const Three& period,
                  const WallRows& walls, double restitution, double contact_time,
                  const Three& gravity, bool collide, double margin, double cell, bool log,
-                 double slice, const std::string& simd, bool sort, int grid) {
+                 double slice, const std::string& simd, bool sort, int grid, bool profile) {
     std::vector<carom::StartSphere> start = spheres(position, radius, fixed);
     const size_t n = start.size();
     if (velocity.shape(0) != n || mass.shape(0) != n || resting.shape(0) != n ||
@@ -91,8 +91,8 @@ auto make_engine(const Vectors& position, const Vectors& velocity, const Numbers
     const carom::World world{three(period), walls_from(walls), restitution,
                              contact_time,  three(gravity),    collide};
     const nb::gil_scoped_release release;
-    return std::make_unique<Engine>(start, time, world, 
-                                    carom::Tuning{margin, cell, log, slice, simd, sort, grid});
+    return std::make_unique<Engine>(
+        start, time, world, carom::Tuning{margin, cell, log, slice, simd, sort, profile, grid});
 }
 
 auto state_of(const Engine& engine) {
@@ -142,7 +142,7 @@ NB_MODULE(_core, m) {
              nb::arg("restitution"), nb::arg("contact_time"), nb::arg("gravity"),
              nb::arg("collide"), nb::arg("margin") = 0.0, nb::arg("cell") = 0.0,
              nb::arg("log") = true, nb::arg("slice") = 0.05, nb::arg("simd") = "",
-             nb::arg("sort") = true, nb::arg("grid") = -1)
+             nb::arg("sort") = true, nb::arg("grid") = -1, nb::arg("profile") = false)
         .def(
             "advance",
             [](Engine& e, double until, int64_t max_collisions, int64_t max_events) {
@@ -175,6 +175,17 @@ NB_MODULE(_core, m) {
         .def_prop_ro("wall_collisions", &Engine::wall_collisions, "With walls.")
         .def_prop_ro("dissipated", &Engine::dissipated, "Energy the rules have taken.")
         .def_prop_ro("withheld", &Engine::withheld, "Energy the contact-time cure kept.")
+        .def(
+            "profile",
+            [](const Engine& e) {
+                using P = carom::Profile;
+                const P& p = e.profile();
+                return std::map<std::string, double>{{"predict", p.of(P::predict)},
+                                                     {"rebuild", p.of(P::rebuild)},
+                                                     {"queue", p.of(P::queue)},
+                                                     {"collide", p.of(P::collide)}};
+            },
+            "Seconds that each part of the work took, from a sample of the events.")
         .def(
             "work",
             [](const Engine& e) {

@@ -1,6 +1,5 @@
 #include "engine.hpp"
 
-#include <chrono>
 #include <stdexcept>
 #include <utility>
 
@@ -9,11 +8,6 @@
 namespace carom {
 
 namespace {
-
-double seconds() {
-    using clock = std::chrono::steady_clock;
-    return std::chrono::duration<double>(clock::now().time_since_epoch()).count();
-}
 
 constexpr size_t kLogCapacity = size_t(1) << 17;
 
@@ -27,6 +21,7 @@ Engine::Engine(const std::vector<StartSphere>& start, double time, const World& 
       logging_(tuning.log),
       slice_(tuning.slice) {
     const PlainArithmetic plain;
+    if (tuning.profile) profile_.start();
     const size_t n = start.size();
     const Vec3& p = world_.period;
     inverse_period_ = {p.x > 0 ? 1 / p.x : 0, p.y > 0 ? 1 / p.y : 0, p.z > 0 ? 1 / p.z : 0};
@@ -78,42 +73,6 @@ bool Engine::epoch_over(const Calendar::Due& due) const {
     return next_partner(event) > kEscape && !stale(event);
 }
 
-// Asks memory for what the events of the coming buckets will need, each stage for a bucket nearer.
-void Engine::look_ahead() const {
-    if (!far_) return;
-    fetch(calendar_.line(3));
-    calendar_.each(2, [this](int32_t i) { fetch(&events_[size_t(i)]); });
-    const auto fetch_own = [this](int32_t i) {
-        if (gridded_)
-            grid_.fetch_block(grid_.around(Grid::unpack(events_[size_t(i)].cell)));
-        else
-            fetch(&rows_.line(i));
-        fetch(&spheres_[size_t(i)]);
-        fetch(&bodies_[size_t(i)]);
-    };
-    calendar_.each(1, [&](int32_t i) {
-        const Event& e = events_[size_t(i)];
-        if (!calendar_.due_in(1, e.t)) return;
-        fetch_own(i);
-        if (!gridded_ && far_ && e.partner == kEscape)
-            cells_.fetch_around(ahead(motion(i, e.t), spheres_[size_t(i)].r, 0));
-        if (e.partner < 0) return;
-        fetch(&events_[size_t(e.partner)]);
-        if (next_partner(e) != kEscape) fetch_own(e.partner);
-    });
-
-    const auto fetch_neighbours = [this](int32_t i) {
-        each_near(i, [this](int32_t j) { fetch(&glances_[size_t(j)]); });
-    };
-    calendar_.each(0, [&](int32_t i) {
-        const Event& e = events_[size_t(i)];
-        fetch_neighbours(i);
-        if (next_partner(e) >= 0) fetch_neighbours(e.partner);
-        if (gridded_ || e.partner != kEscape) return;
-        each_near(i, [this](int32_t j) { fetch(&rows_.line(j)); });
-    });
-}
-
 Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
     const PlainArithmetic plain;
     if (collapse_.i != kNone) return Stop::collapse;
@@ -131,6 +90,7 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
             return Stop::slice;
         }
         Calendar::Due due;
+        profile_.begin(k);
         if (!calendar_.next(pending(), limit, due, [this] { look_ahead(); })) {
             if (until == kNever) return Stop::idle;
             user_ = asked_ = std::max(user_, limit);
@@ -143,6 +103,7 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
             continue;
         }
         calendar_.pop();
+        profile_.lap(Profile::queue);
         now_ = due.t;
         if (now_ > focused_until_) focus();
         const Event& event = events_[size_t(due.id)];
@@ -212,8 +173,8 @@ std::vector<Record> Engine::take_log(double& start) {
 size_t Engine::bytes() const {
     const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
     return of(labels_) + of(places_) + of(spheres_) + of(bodies_) + of(events_) + of(images_) +
-           of(falls_) + of(fresh_) + of(last_touch_) + of(watches_) + of(glances_) +
-           rows_.bytes() + cells_.bytes() + calendar_.bytes();
+           of(falls_) + of(fresh_) + of(last_touch_) + of(watches_) + of(glances_) + rows_.bytes() +
+           cells_.bytes() + calendar_.bytes();
 }
 
 }  // namespace carom

@@ -19,6 +19,7 @@
 #include "glance.hpp"
 #include "grid.hpp"
 #include "neighbours.hpp"
+#include "profile.hpp"
 #include "rules.hpp"
 #include "spheres.hpp"
 #include "walls.hpp"
@@ -60,10 +61,11 @@ struct Tuning {         // bookkeeping only: no bit of a trajectory depends on i
     double margin = 0;  // of the neighbour shells; 0 = chosen from the density
     double cell = 0;    // width of the smallest cells; 0 = chosen from the shells
     bool log = true;
-    double slice = 0.05;  // seconds of work after which `advance` returns
-    std::string simd;     // instruction set; "" = the best there is
-    bool sort = true;     // neighbours in space become neighbours in memory
-    int grid = -1;        // 1: a grid if it can be, 0: lists; -1 = chosen from the density
+    double slice = 0.05;   // seconds of work after which `advance` returns
+    std::string simd;      // instruction set; "" = the best there is
+    bool sort = true;      // neighbours in space become neighbours in memory
+    bool profile = false;  // ask how long each part takes
+    int grid = -1;         // 1: a grid if it can be, 0: lists; -1 = chosen from the density
 };
 
 struct Work {  // what the engine has done; bookkeeping only
@@ -97,6 +99,7 @@ public:
     StartSphere sphere(int number) const;  // at time()
     size_t bytes() const;
     const Work& work() const { return work_; }
+    const Profile& profile() const { return profile_; }
 
     // All events since the last call; `start` is the time their offsets count from.
     std::vector<Record> take_log(double& start);
@@ -123,6 +126,7 @@ private:
         int32_t partner;  // may be met first,
         double first;     // not before this time,
         double second;    // and any other not before this
+        int axis = 0;     // along which it leaves its cell
         void add(const Guess& guess, const int32_t* row, double now, double unit) {
             const double t1 = now + guess.first * unit, t2 = now + guess.second * unit;
             if (guess.slot == 0) return;
@@ -155,7 +159,6 @@ private:
 
     // engine.cpp
     Motion motion(int i, double t) const;
-    void look_ahead() const;
     bool epoch_over(const Calendar::Due& due) const;
     bool stale(const Event& event) const {
         return event.partner >= 0 && events_[size_t(event.partner)].count != event.partner_count;
@@ -174,12 +177,15 @@ private:
     void find_event(int i);
     void refresh(int i);
     Look look(int i) const;
+    void fetch_partner(const Look& look) const;
     void choose(int i, const Look& look, double& t, int32_t& partner) const;
     void decide(int i, const Look& look);
     double free_contact(int i, int32_t j) const;
-    void settle_on(int i, double t, int32_t partner, double leaves);
+    void settle_on(int i, double t, int32_t partner, double leaves, int axis);
     template <class Visit>
     void each_near(int i, const Visit& visit) const;
+    int32_t collect(const GridBlock& block, size_t first) const;
+    void look_at_exit(const Motion& at, Grid::Cell cell, Look& out) const;
     void look_through(int i, const GridBlock& block, Look& out) const;
     void change_cell(int i);
     void predict_walls(int i, Next& best) const;
@@ -195,14 +201,20 @@ private:
     Vec3 ahead(const Motion& at, double r, int widening) const;
     void make_shell(int i);
     bool crowded(int i) const;
-    int least_widening(int i) const {
-        return spheres_[size_t(i)].r > giant_ ? 0 : least_widening_;
-    }
+    int least_widening(int i) const { return spheres_[size_t(i)].r > giant_ ? 0 : least_widening_; }
     double margin(int widening) const;
     Shell shell(int i) const;
     void place_shell(int i, const Vec3& centre, int widening);
     void exchange(int i);
     void focus();
+
+    // ahead.cpp
+    void look_ahead() const;
+    void ask_for_rows(int i, const Event& e) const;
+    void ask_for_row_neighbours(int i, const Event& e) const;
+    GridBlock new_cells(int i, const Event& e) const;
+    void ask_for_cells(int i, const Event& e) const;
+    void ask_for_cell_neighbours(int i, const Event& e) const;
 
     // execute.cpp
     void execute(int i);
@@ -220,7 +232,7 @@ private:
     World world_;
     Vec3 inverse_period_;
     bool gravity_ = false, periodic_ = false;
-    bool plain_ = false;  // free flight, one image, restitution 1
+    bool plain_ = false;           // free flight, one image, restitution 1
     bool shells_on_ = true;        // neighbours matter at all
     double half_period_ = kNever;  // of the shortest periodic axis
 
@@ -237,8 +249,8 @@ private:
     Array<Sphere> spheres_;
     Array<Body> bodies_;
     Array<Event> events_;
-    Array<Image> images_;  // of the events' partners, where a box is so small that it matters
-    Array<uint8_t> falls_;          // gravity acts on it: neither fixed nor resting
+    Array<Image> images_;       // of the events' partners, where a box is so small that it matters
+    Array<uint8_t> falls_;      // gravity acts on it: neither fixed nor resting
     Array<uint8_t> fresh_;      // its anchor is its last event, not the start of an epoch
     Array<double> last_touch_;  // TC model only
     Array<Watch> watches_;      // inelastic runs only
@@ -268,6 +280,7 @@ private:
     Found found_;
 
     Work work_;
+    Profile profile_;
     int64_t collisions_ = 0, wall_collisions_ = 0;
     Sum dissipated_, withheld_;
     double deepest_ = 0;
@@ -338,6 +351,16 @@ inline void Engine::refresh(int i) {
     std::memcpy(g.v, &flight, sizeof flight);
 }
 
+// The spheres in some cells of the grid, into near_.id from place `first` on.
+inline int32_t Engine::collect(const GridBlock& block, size_t first) const {
+    constexpr size_t kBehind = 16;  // room behind them
+    for (;;) {
+        const int32_t n = kernels_->collect(grid_.cells(), block, &near_.id[first],
+                                            int32_t(near_.id.size() - first - kBehind));
+        if (n >= 0) return n;
+        near_.id.resize(2 * near_.id.size());
+    }
+}
 
 template <class Visit>
 void Engine::each_near(int i, const Visit& visit) const {
@@ -347,10 +370,7 @@ void Engine::each_near(int i, const Visit& visit) const {
         return;
     }
     const GridBlock block = grid_.around(Grid::unpack(events_[size_t(i)].cell));
-    int32_t n = -1;
-    while ((n = kernels_->collect(grid_.cells(), block, near_.id.data(),
-                                  int32_t(near_.id.size()))) < 0)
-        near_.id.resize(2 * near_.id.size());
+    const int32_t n = collect(block, 0);
     for (int32_t k = 0; k < n; ++k)
         if (near_.id[size_t(k)] != i) visit(near_.id[size_t(k)]);
 }

@@ -9,6 +9,7 @@ void Engine::execute(int i) {
     if (e.partner < 0) {
         hit_wall(i, -1 - e.partner, e.t);
         ++wall_collisions_;
+        profile_.lap(Profile::collide);
         if (crowded(i)) make_shell(i);
         predict(i);
         return;
@@ -22,8 +23,10 @@ void Engine::execute(int i) {
     else
         collide(lo, hi, first ? m : Image{} - m, e.t);
     ++collisions_;
+    profile_.lap(Profile::collide);
     if (crowded(lo)) make_shell(lo);
     if (crowded(hi)) make_shell(hi);
+    profile_.lap(Profile::rebuild);
     predict_both(lo, hi);
 }
 
@@ -44,8 +47,8 @@ void Engine::collide_plain(int32_t i, int32_t j, double t) {
         share_b = a.fixed() ? Pair{1, 0} : b.fixed() ? Pair{} : share(b.mass, a.mass);
     }
     const Vec3 change = smooth(r, rel.v, 1);
-    const Image unwrapped = Image{int32_t(boxes.x), int32_t(boxes.y), int32_t(boxes.z)} + a.image -
-                            b.image;
+    const Image unwrapped =
+        Image{int32_t(boxes.x), int32_t(boxes.y), int32_t(boxes.z)} + a.image - b.image;
     a.last = j, b.last = i;
     a.last_image = nearby(unwrapped), b.last_image = nearby(Image{} - unwrapped);
     if (logging_) log(t, i, j, change * (a.fixed() ? b.mass : a.mass * share_a.hi));

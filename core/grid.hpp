@@ -16,13 +16,20 @@ namespace carom {
 
 class Grid {
 public:
-    // Coordinates of a cell, ten bits each.
+    // Coordinates of a cell, ten bits each; above them the axis along which a sphere will leave it.
     static constexpr int kBits = 10, kMost = (1 << kBits) - 1;
     struct Cell {
         int32_t c[3];
     };
-    static int32_t pack(Cell a) { return a.c[0] | a.c[1] << kBits | a.c[2] << (2 * kBits); }
-    static Cell unpack(int32_t p) { return {{p & kMost, (p >> kBits) & kMost, p >> (2 * kBits)}}; }
+    static uint32_t pack(Cell a, int axis) {
+        return uint32_t(a.c[0] | a.c[1] << kBits | a.c[2] << (2 * kBits)) | uint32_t(axis)
+                                                                                << (3 * kBits);
+    }
+    static Cell unpack(uint32_t p) {
+        return {
+            {int32_t(p & kMost), int32_t(p >> kBits & kMost), int32_t(p >> (2 * kBits) & kMost)}};
+    }
+    static int axis(uint32_t p) { return int(p >> (3 * kBits)); }
 
     // Cells at least `width` wide in a room of `size` around `centre`. Along an axis with walls the
     // cells of the border go on for ever. False if that makes too few cells, or too many.
@@ -36,6 +43,7 @@ public:
             if (!(n >= 5 && n <= kMost)) return false;
             n_[a] = int32_t(n);
             width_[a] = side[a] / n;
+            half_[a] = 0.5 * width_[a];
             low_[a] = mid[a] - 0.5 * side[a];
             period_[a] = periodic[a] ? side[a] : 0;
             inverse_[a] = periodic[a] ? 1 / side[a] : 0;
@@ -140,13 +148,13 @@ public:
     };
     Crossing crossing(const Vec3& d, const Vec3& v, Cell at) const {
         const double from[3] = {d.x, d.y, d.z}, speed[3] = {v.x, v.y, v.z};
-        Crossing out{kNever, 0};  // of a sphere at rest
-        for (int a = 0; a < 3; ++a) {
-            const double wait = (std::copysign(0.5 * width_[a], speed[a]) - from[a]) / speed[a];
-            const bool open = period_[a] == 0 && at.c[a] == (speed[a] > 0 ? n_[a] - 1 : 0);
-            const bool sooner = wait < out.wait && speed[a] != 0 && !open;
-            out.wait = sooner ? wait : out.wait;
-            out.axis = sooner ? a : out.axis;
+        Crossing out{kNever, 0};       // of a sphere at rest
+        for (int a = 0; a < 3; ++a) {  // no branches: nothing here can be foreseen
+            double wait = (std::copysign(half_[a], speed[a]) - from[a]) / speed[a];
+            wait = speed[a] != 0 ? wait : kNever;
+            if (period_[a] == 0 && at.c[a] == (speed[a] > 0 ? n_[a] - 1 : 0)) wait = kNever;
+            out.axis = wait < out.wait ? a : out.axis;
+            out.wait = wait < out.wait ? wait : out.wait;
         }
         out.wait = std::max(out.wait, 0.0);
         return out;
@@ -224,7 +232,7 @@ private:
     }
 
     int32_t n_[3] = {0, 0, 0};
-    double width_[3], low_[3], period_[3], inverse_[3];
+    double width_[3], half_[3], low_[3], period_[3], inverse_[3];
     Array<GridCell> cells_;
     int32_t free_ = -1;  // chain of spare cells
 };

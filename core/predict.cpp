@@ -75,8 +75,7 @@ void Engine::consider(int i, int32_t j, Next& best) const {
     // The image is chosen from where both are now.
     const Vec3 here = flown(rel.r, rel.v, rel.a, now_ - rel.from);
     if (several_images_) {
-        const double reach =
-            spheres_[size_t(i)].r + spheres_[size_t(j)].r + 4 * margin(widest_);
+        const double reach = spheres_[size_t(i)].r + spheres_[size_t(j)].r + 4 * margin(widest_);
         if (reach >= half_period_) {
             const Span x = images_within(here.x, reach, inverse_period_.x),
                        y = images_within(here.y, reach, inverse_period_.y),
@@ -148,33 +147,39 @@ void Engine::find_event(int i) {
         }
         leaves = escape_time(i, motion(i, now_));
     }
-    settle_on(i, best.t, best.partner, leaves);
+    settle_on(i, best.t, best.partner, leaves, 0);
     if (several_images_) images_[size_t(i)] = best.m;
 }
 
-inline void Engine::settle_on(int i, double t, int32_t partner, double leaves) {
+inline void Engine::settle_on(int i, double t, int32_t partner, double leaves, int axis) {
     Event& e = events_[size_t(i)];
+    // Hardly a branch: which comes first cannot be foreseen, and is known late.
     const bool escapes = leaves <= t && leaves < kNever;  // of two at one time, this one first
-    e.t = escapes ? leaves : t;
+    e.t = std::min(leaves, t);
     if (gridded_) {
         // Further than this, single precision may mistake who is first: look again at the crossing.
         const double wait = t - now_, most = 64 * cell_;
-        const bool far = escapes && t < kNever &&
-                         wait * wait * norm2(spheres_[size_t(i)].v) > most * most;
+        const bool far =
+            t < kNever && escapes && wait * wait * norm2(spheres_[size_t(i)].v) > most * most;
         e.contact = far ? kNever : t;
-        if (far) partner = kEscape;
-    } else if (escapes) {
-        partner = kEscape;
+        e.cell = Grid::pack(Grid::unpack(e.cell), axis);
+        partner = far ? kEscape : partner;
+    } else {
+        partner = escapes ? kEscape : partner;
     }
     e.partner = partner;
-    e.partner_count = partner >= 0 ? events_[size_t(partner)].count : 0;
+    const int32_t somebody = partner >= 0 ? partner : i;
+    e.partner_count = events_[size_t(somebody)].count;
+}
+
+inline void Engine::look_at_exit(const Motion& at, Grid::Cell cell, Look& out) const {
+    const auto [wait, axis] = grid_.crossing(grid_.from_middle(at.x, cell), at.v, cell);
+    out.leaves = now_ + wait;
+    out.axis = axis;
 }
 
 void Engine::look_through(int i, const GridBlock& block, Look& out) const {
-    int32_t n = -1;
-    while ((n = kernels_->collect(grid_.cells(), block, &near_.id[1],
-                                  int32_t(near_.id.size()) - 17)) < 0)
-        near_.id.resize(2 * near_.id.size());
+    int32_t n = collect(block, 1);
     int32_t* row = near_.id.data();
     for (int k = 1; k <= 16; ++k) row[n + k] = i;
     // The first place of each piece is not looked at: it is the last of the piece before.
@@ -190,7 +195,7 @@ inline Engine::Look Engine::look(int i) const {
     Look out{kNever, kNone, kNever, kNever};
     if (gridded_) {
         const Grid::Cell cell = Grid::unpack(events_[size_t(i)].cell);
-        out.leaves = now_ + grid_.crossing(grid_.from_middle(at.x, cell), at.v, cell).wait;
+        look_at_exit(at, cell, out);
         look_through(i, grid_.around(cell), out);
         return out;
     }
@@ -214,17 +219,18 @@ inline void Engine::decide(int i, const Look& look) {
         partner = wall.partner;
     }
     choose(i, look, t, partner);
-    settle_on(i, t, partner, look.leaves);
+    settle_on(i, t, partner, look.leaves, look.axis);
 }
 
 inline void Engine::choose(int i, const Look& look, double& t, int32_t& partner) const {
-    // On a grid what is met later is known for good, so that a crossing need look at new cells only.
+    // On a grid what is met later is known for good, so that a crossing need look at new cells
+    // only.
     const double leaves = gridded_ ? kNever : look.leaves;
     double limit = std::min(t, leaves);
     if (look.first < kNever && look.first <= limit && look.partner != i) {
         const double met = free_contact(i, look.partner);
-        if (met < t || (met == t && t < kNever &&
-                        precedes(i, {met, look.partner, {}}, {t, partner, {}}))) {
+        if (met < t ||
+            (met == t && t < kNever && precedes(i, {met, look.partner, {}}, {t, partner, {}}))) {
             t = met;
             partner = look.partner;
             limit = std::min(t, leaves);
@@ -244,22 +250,25 @@ void Engine::change_cell(int i) {
     Event& e = events_[size_t(i)];
     const Motion at = motion(i, now_);
     const Grid::Cell old = Grid::unpack(e.cell);
-    const int axis = grid_.crossing(grid_.from_middle(at.x, old), at.v, old).axis;
+    const int axis = Grid::axis(e.cell);
     const bool up = (axis == 0 ? at.v.x : axis == 1 ? at.v.y : at.v.z) > 0;
     const Grid::Cell cell = grid_.next(old, axis, up);
     grid_.remove(i, old);
     grid_.add(i, cell);
-    e.cell = Grid::pack(cell);
+    e.cell = Grid::pack(cell, axis);
+    profile_.lap(Profile::rebuild);
     if (e.partner == kEscape || stale(e)) return predict(i);
     refresh(i);
     Look seen{kNever, kNone, kNever, kNever};
-    seen.leaves = now_ + grid_.crossing(grid_.from_middle(at.x, cell), at.v, cell).wait;
+    look_at_exit(at, cell, seen);
     look_through(i, grid_.face(cell, axis, up), seen);
     double t = e.contact;
     int32_t partner = e.partner;
     choose(i, seen, t, partner);
-    settle_on(i, t, partner, seen.leaves);
+    settle_on(i, t, partner, seen.leaves, seen.axis);
+    profile_.lap(Profile::predict);
     calendar_.schedule(i, pending());
+    profile_.lap(Profile::queue);
 }
 
 // When two in free flight meet in the one image that they can: what `consider` finds for them.
@@ -279,7 +288,15 @@ inline double Engine::free_contact(int i, int32_t j) const {
 void Engine::predict(int i) {
     ++work_.predictions;
     find_event(i);
+    profile_.lap(Profile::predict);
     calendar_.schedule(i, pending());
+    profile_.lap(Profile::queue);
+}
+
+inline void Engine::fetch_partner(const Look& look) const {
+    if (look.partner < 0) return;
+    fetch(&spheres_[size_t(look.partner)]);
+    fetch(&events_[size_t(look.partner)]);
 }
 
 // Both partners of a collision: the second is looked at while the first waits for memory.
@@ -292,11 +309,16 @@ void Engine::predict_both(int i, int j) {
     work_.predictions += 2;
     refresh(i);
     refresh(j);
-    const Look a = look(i), b = look(j);
+    const Look a = look(i);
+    fetch_partner(a);
+    const Look b = look(j);
+    fetch_partner(b);
     decide(i, a);
     decide(j, b);
+    profile_.lap(Profile::predict);
     calendar_.schedule(i, pending());
     calendar_.schedule(j, pending());
+    profile_.lap(Profile::queue);
 }
 
 }  // namespace carom

@@ -10,8 +10,8 @@ namespace carom {
 namespace {
 
 constexpr double kSpherical = 4.18879020478639098;  // 4 pi / 3
-constexpr double kDilute = 0.12;                    // packing fraction up to which a grid is faster
-constexpr double kPerCell = 1;                      // spheres in a cell of it
+constexpr double kDilute = 0.3;                     // packing fraction up to which a grid is faster
+constexpr double kPerCell = 0.8;                    // spheres in a cell of it
 
 double median_radius(const Array<Sphere>& spheres) {
     std::vector<double> r;
@@ -170,7 +170,7 @@ void Engine::build_grid() {
         const Vec3 x = motion(int(i), now_).x;  // may have left the box it is anchored in
         const Grid::Cell cell = grid_.cell_of(x - whole_boxes(x) * world_.period);
         grid_.add(int32_t(i), cell);
-        events_[i].cell = Grid::pack(cell);
+        events_[i].cell = Grid::pack(cell, 0);
     }
 }
 

@@ -35,6 +35,7 @@ void Engine::escape(int i) {
             return predict(i);
     }
     make_shell(i);
+    profile_.lap(Profile::rebuild);
     predict(i);
 }
 
@@ -86,8 +87,7 @@ void Engine::exchange(int i) {
             fetch(&rows_.line(old.id[std::countr_zero(left)]));
         for (uint32_t left = d.fresh; left != 0; left &= left - 1)
             fetch(&rows_.line(now[size_t(std::countr_zero(left))]));
-        for (; d.gone != 0; d.gone &= d.gone - 1)
-            rows_.remove(old.id[std::countr_zero(d.gone)], i);
+        for (; d.gone != 0; d.gone &= d.gone - 1) rows_.remove(old.id[std::countr_zero(d.gone)], i);
         for (; d.fresh != 0; d.fresh &= d.fresh - 1)
             rows_.add(now[size_t(std::countr_zero(d.fresh))], i);
     } else {
@@ -110,7 +110,8 @@ void Engine::exchange(int i) {
 // too small or in too wide a shell: those are marked to be solved exactly.
 void Engine::focus() {
     if (!glancing_) return;
-    far_ = size() > 8000;
+    // Beyond the caches: measured where looking ahead begins to pay.
+    far_ = size() > (gridded_ ? 64000 : 20000);
     const double epoch = clock_.epoch;
     double energy = 0;
     for (const Sphere& s : spheres_) energy += norm2(s.v);

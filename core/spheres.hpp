@@ -57,11 +57,11 @@ inline NearImage nearby(Image m) { return {int16_t(m.x), int16_t(m.y), int16_t(m
 
 // The rest of the stored state, touched once per collision.
 struct Body {
-    double mass = 1;         // infinite for a fixed sphere
-    int32_t last = kNone;    // partner of the last event ...
-    NearImage last_image;    // ... and its image, counted in unwrapped positions
-    int16_t rests_on = -1;   // wall it rests on, or -1
-    Image image;             // whole boxes travelled
+    double mass = 1;        // infinite for a fixed sphere
+    int32_t last = kNone;   // partner of the last event ...
+    NearImage last_image;   // ... and its image, counted in unwrapped positions
+    int16_t rests_on = -1;  // wall it rests on, or -1
+    Image image;            // whole boxes travelled
 
     bool fixed() const { return mass > 1e300; }
 };
@@ -75,7 +75,7 @@ struct Event {
     uint32_t partner_count = 0;  // of the partner when predicted: differs later = stale
     uint32_t count = 0;          // impulses this sphere has received
     union {
-        int32_t cell = 0;  // packed coordinates
+        uint32_t cell = 0;  // packed coordinates, and the axis of its crossing
         float shell_x;
     };
     union {

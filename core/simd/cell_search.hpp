@@ -99,15 +99,40 @@ int32_t near(const CellLine* lines, const CellBlock& block, int32_t* out, int32_
     return found;
 }
 
-// The spheres of one grid cell: appended to `out`, which has room for four.
+#if defined(__SSSE3__) && !defined(__AVX512VL__)
+// For each set of places in use, the shuffle that moves them to the front.
+struct Fronts {
+    alignas(16) uint8_t shuffle[16][16] = {};
+    constexpr Fronts() {
+        for (int used = 0; used < 16; ++used) {
+            int n = 0;
+            for (int k = 0; k < 4; ++k) {
+                if ((used >> k & 1) == 0) continue;
+                for (int b = 0; b < 4; ++b) shuffle[used][4 * n + b] = uint8_t(4 * k + b);
+                ++n;
+            }
+        }
+    }
+};
+constexpr Fronts kFronts;
+#endif
+
+// The spheres of one grid cell: appended to `out`, which has room for four. No branch: how full a
+// cell is cannot be foreseen.
 [[gnu::always_inline]] inline int32_t spheres_in(const GridCell& cell, int32_t* out) {
 #if defined(__AVX512VL__) && defined(__AVX512DQ__)
     const __m128i id = _mm_load_si128(reinterpret_cast<const __m128i*>(cell.id));
-    const __mmask8 mask = uint8_t(~_mm_movepi32_mask(id)) & 15;
-    _mm_storeu_si128(reinterpret_cast<__m128i*>(out), _mm_maskz_compress_epi32(mask, id));
-    return __builtin_popcount(mask);
+    const __mmask8 used = uint8_t(~_mm_movepi32_mask(id)) & 15;
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out), _mm_maskz_compress_epi32(used, id));
+    return __builtin_popcount(used);
+#elif defined(__SSSE3__)
+    const __m128i id = _mm_load_si128(reinterpret_cast<const __m128i*>(cell.id));
+    const int used = ~_mm_movemask_ps(_mm_castsi128_ps(id)) & 15;
+    const __m128i front = _mm_load_si128(reinterpret_cast<const __m128i*>(kFronts.shuffle[used]));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(out), _mm_shuffle_epi8(id, front));
+    return __builtin_popcount(unsigned(used));
 #else
-    int32_t n = 0;  // no branch: how full a cell is cannot be foreseen
+    int32_t n = 0;
     for (const int32_t id : cell.id) {
         out[n] = id;
         n += id >= 0;
@@ -116,12 +141,36 @@ int32_t near(const CellLine* lines, const CellBlock& block, int32_t* out, int32_
 #endif
 }
 
+#if defined(__AVX512F__)
+// Three cells side by side at once; -1 if one of them is linked to more.
+[[gnu::always_inline]] inline int32_t spheres_in_three(const GridCell* cells, int32_t* out) {
+    const __m512i id = _mm512_maskz_loadu_epi32(0x0fff, cells);
+    if (_mm512_cmplt_epi32_mask(id, _mm512_set1_epi32(-1)) != 0) return -1;
+    const __mmask16 used = _mm512_mask_cmpge_epi32_mask(0x0fff, id, _mm512_setzero_si512());
+    _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(used, id));
+    return __builtin_popcount(used);
+}
+#endif
+
 // How many spheres are in a block of grid cells; -1 if `out` may not have room for all.
 int32_t collect(const GridCell* cells, const GridBlock& block, int32_t* out, int32_t room) {
     int32_t found = 0;
+    [[maybe_unused]] const bool side_by_side = block.x.n == 3 &&
+                                               block.x.cell[1] == block.x.cell[0] + 1 &&
+                                               block.x.cell[2] == block.x.cell[1] + 1;
     for (int kz = 0; kz < block.z.n; ++kz) {
         for (int ky = 0; ky < block.y.n; ++ky) {
             const int32_t row = block.z.cell[kz] + block.y.cell[ky];
+            if (found + 16 > room) return -1;
+#if defined(__AVX512F__)
+            if (side_by_side) {
+                const int32_t n = spheres_in_three(&cells[row + block.x.cell[0]], out + found);
+                if (n >= 0) {
+                    found += n;
+                    continue;
+                }
+            }
+#endif
             for (int kx = 0; kx < block.x.n; ++kx) {
                 const GridCell* cell = &cells[row + block.x.cell[kx]];
                 for (;;) {

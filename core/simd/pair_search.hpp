@@ -23,22 +23,22 @@ using Ints [[gnu::vector_size(4 * kLanes)]] = int32_t;
 using Words [[gnu::vector_size(4 * kLanes)]] = uint32_t;
 using Quad [[gnu::vector_size(16)]] = float;
 
-[[gnu::always_inline]] inline Floats square_root(Floats x) {
-#if defined(__AVX512F__)
-    return (Floats)_mm512_maskz_sqrt_ps(0xffff, (__m512)x);
-#elif defined(__AVX__)
-    return (Floats)_mm256_sqrt_ps((__m256)x);
+// c / (sqrt(d) - b), or a little less: estimates good to 12 bits are quicker than root and
+// quotient, and a bound may be low.
+[[gnu::always_inline]] inline Floats quotient(Floats c, Floats d, Floats b) {
+#if CAROM_LANES == 16
+    const Floats root = d * (Floats)_mm512_maskz_rsqrt14_ps(0xffff, (__m512)d);
+    return c * (Floats)_mm512_maskz_rcp14_ps(0xffff, (__m512)(root - b)) * (1 - 0x1p-10f);
+#elif CAROM_LANES == 8
+    const Floats root = d * (Floats)_mm256_rsqrt_ps((__m256)d);
+    return c * (Floats)_mm256_rcp_ps((__m256)(root - b)) * (1 - 0x1p-10f);
 #elif defined(__SSE2__)
-    return (Floats)_mm_sqrt_ps((__m128)x);
+    const Floats root = d * (Floats)_mm_rsqrt_ps((__m128)d);
+    return c * (Floats)_mm_rcp_ps((__m128)(root - b)) * (1 - 0x1p-10f);
 #else
-    for (int k = 0; k < kLanes; ++k) x[k] = __builtin_sqrtf(x[k]);
-    return x;
+    for (int k = 0; k < kLanes; ++k) d[k] = __builtin_sqrtf(d[k]);
+    return c / (d - b);
 #endif
-}
-
-template <class T>
-[[gnu::always_inline]] inline Floats same(T x) {
-    return Floats{} + float(x);
 }
 
 // Half a glance of every fourth neighbour, side by side.
@@ -121,7 +121,7 @@ constexpr int32_t kSlots = 31;           // the last bits of a time give way to 
     const float own2 = me.v[0] * me.v[0] + me.v[1] * me.v[1] + me.v[2] * me.v[2];
     const Ints touching = (c < zero) & (b * b < (v2 + 4 * own2) * lens.still);
     const Ints refused = (d < zero) | ((b >= zero) & ~touching) | (r2 == zero);  // itself
-    Floats time = c / (square_root(d) - b);
+    Floats time = quotient(c, d, b);
     time = time >= zero ? time : zero;
     const Ints bits = (Ints(time) & ~kSlots) | slot;
     return refused ? Ints{} + kNoTime : bits;

@@ -54,6 +54,7 @@ class Engine:
         simd: str = "",
         sort: bool = True,
         grid: int = -1,
+        profile: bool = False,
     ) -> None: ...
     def advance(self, until: float, max_collisions: int, max_events: int) -> int:
         """Runs until a time or a count; see Stop."""
@@ -103,6 +104,9 @@ class Engine:
     @property
     def withheld(self) -> float:
         """Energy the contact-time cure kept."""
+
+    def profile(self) -> dict[str, float]:
+        """Seconds that each part of the work took, from a sample of the events."""
 
     def work(self) -> dict[str, int]:
         """

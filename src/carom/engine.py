@@ -105,7 +105,8 @@ class FastEngine:
     records. `margin`, `cell`, `slice_seconds`, `simd` (the instruction set), `sort` (neighbours in
     space become neighbours in memory) and `grid` (1: neighbours on a grid where that can be, 0: in
     lists, -1: whichever is faster) are bookkeeping for tests: the trajectory's bits do not depend
-    on them. Any thread may call it: a call waits for the slice in hand.
+    on them; `profile` asks how long each part takes. Any thread may call it: a call waits for the
+    slice in hand.
     """
 
     def __init__(
@@ -120,6 +121,7 @@ class FastEngine:
         simd: str = "",
         sort: bool = True,
         grid: int = -1,
+        profile: bool = False,
     ) -> None:
         self._start = state.copy()
         for name in UNCHANGING:
@@ -157,6 +159,7 @@ class FastEngine:
             simd=simd,
             sort=sort,
             grid=grid,
+            profile=profile,
         )
 
     @property
@@ -188,6 +191,14 @@ class FastEngine:
     def collapse(self) -> tuple[float, int, int] | None:
         """(time, i, j) of an inelastic collapse, j as in event records; None if there is none."""
         return self._core.collapse
+
+    def profile(self) -> dict[str, float]:
+        """Seconds spent so far in each part of the work, if built with `profile=True`.
+
+        `predict` events, `rebuild` lists of neighbours or change cells, `queue`, `collide`: an
+        estimate from every 61st event.
+        """
+        return self._core.profile()
 
     def work(self) -> dict[str, int]:
         """How often it has done what.

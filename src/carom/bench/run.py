@@ -111,7 +111,7 @@ class Run:
         begun = state.collisions + state.wall_collisions
         self._engine = engine(state, self._world, profile=True)
         self._engine.advance(case.until, max_collisions=case.collisions or NO_LIMIT)
-        seconds, work = self._engine.profile(), self._engine.work()  # type: ignore[attr-defined]
+        seconds, work = self._engine.profile(), self._engine.work()
         total = sum(seconds.values())
         events = self._counts()[0] - begun
         return {
@@ -122,6 +122,4 @@ class Run:
 
 def engine(state: State, world: World, *, profile: bool = False) -> FastEngine:
     """The engine, which keeps no records and runs through."""
-    if profile:
-        return FastEngine(state, world, log=False, slice_seconds=NEVER, profile=True)  # type: ignore
-    return FastEngine(state, world, log=False, slice_seconds=NEVER)
+    return FastEngine(state, world, log=False, slice_seconds=NEVER, profile=profile)
