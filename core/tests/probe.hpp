@@ -28,7 +28,7 @@ struct EngineProbe {
     static void place(Engine& e, int i, double now, int widening) {
         const Engine::Motion at = e.motion(i, now);
         if (e.gridded_)
-            e.events_[size_t(i)].cell = Grid::pack(e.grid_.cell_of(wrapped(e, at.x)));
+            e.events_[size_t(i)].cell = Grid::pack(e.grid_.cell_of(wrapped(e, at.x)), 0);
         else
             e.place_shell(i, e.ahead(at, e.spheres_[size_t(i)].r, widening), widening);
     }

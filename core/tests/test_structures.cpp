@@ -236,8 +236,8 @@ TEST(the_grid_holds_what_a_map_holds) {
     CHECK(!grid.reset(1, {}, {2000, 9, 9}, periodic, 100000));  // too many along an axis
     CHECK(!grid.reset(1, {}, {100, 100, 100}, periodic, 100));  // too many
     CHECK(grid.reset(1, {}, {5.5, 6.5, 7.5}, periodic, 100));
-    std::map<int32_t, std::set<int32_t>> map;  // of packed cells
-    std::map<int32_t, int32_t> where;
+    std::map<uint32_t, std::set<int32_t>> map;  // of packed cells
+    std::map<int32_t, uint32_t> where;
     size_t most = 0;
     for (int step = 0; step < 30000; ++step) {
         // Now and then all into a few cells, and out again.
@@ -251,10 +251,13 @@ TEST(the_grid_holds_what_a_map_holds) {
         } else {
             const Grid::Cell c = crowd ? Grid::Cell{{whole(0, 1), 0, 0}}
                                        : Grid::Cell{{whole(0, 4), whole(0, 5), whole(0, 6)}};
-            CHECK(Grid::pack(Grid::unpack(Grid::pack(c))) == Grid::pack(c));
+            for (const int a : {0, 1, 2}) {
+                CHECK(Grid::pack(Grid::unpack(Grid::pack(c, a)), a) == Grid::pack(c, a));
+                CHECK(Grid::axis(Grid::pack(c, a)) == a);
+            }
             grid.add(i, c);
-            map[Grid::pack(c)].insert(i);
-            where[i] = Grid::pack(c);
+            map[Grid::pack(c, 0)].insert(i);
+            where[i] = Grid::pack(c, 0);
         }
         if (step == 15000) most = grid.bytes();
         if (step % 50 != 0) continue;
@@ -276,7 +279,7 @@ TEST(the_grid_holds_what_a_map_holds) {
                             there = there && near.c[a] >= 0 && near.c[a] < n[a];
                         }
                         if (!there) continue;
-                        const std::set<int32_t>& ids = map[Grid::pack(near)];
+                        const std::set<int32_t>& ids = map[Grid::pack(near, 0)];
                         expected.insert(expected.end(), ids.begin(), ids.end());
                         for (const int32_t j : ids) CHECK(grid.has(j, near));
                     }
