@@ -37,7 +37,7 @@ def description() -> dict[str, Any]:
         "cores": os.cpu_count(),
         "caches": _caches(),
         "memory": memory(),
-        "system": f"{platform.system()} {platform.release()} {platform.machine()}",
+        "system": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
         "numpy": np.__version__,
         "carom": version("carom"),
