@@ -157,7 +157,7 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
         }
         calendar_.pop();
         now_ = due.t;
-        if (now_ > focused_until_) focus();
+        if (now_ > focused_until_) look_again();
         const Event& event = events_[size_t(due.id)];
         if (next_partner(event) == kEscape) {
             gridded_ ? change_cell(due.id) : escape(due.id);

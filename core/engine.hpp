@@ -193,6 +193,8 @@ private:
     void escape(int i);
     Vec3 ahead(const Motion& at, double r, int widening) const;
     void make_shell(int i);
+    void renew_shell(int i);
+    void join(int32_t j, int i);
     bool crowded(int i) const;
     int least_widening(int i) const {
         return spheres_[size_t(i)].r > giant_ ? 0 : least_widening_;
@@ -202,6 +204,7 @@ private:
     void place_shell(int i, const Vec3& centre, int widening);
     void exchange(int i);
     void focus();
+    void look_again();
 
     // execute.cpp
     void execute(int i);
@@ -244,7 +247,9 @@ private:
     const Kernels* kernels_;
     bool glancing_ = false;  // one image, no gravity: pairs are looked through at a glance
     Lens lens_;
+    double span_ = 1;           // for such a time: an epoch, longer where little happens
     double focused_until_ = 0;  // glances are too old after that
+    int64_t focused_events_ = 0;
     Array<Glance> glances_;
 
     bool gridded_ = false;  // neighbours are found on a grid, not in lists
@@ -264,6 +269,7 @@ private:
     Cells cells_;
     Calendar calendar_;
     Found found_;
+    std::vector<int32_t> outgrown_;  // rows that have become too long
 
     Work work_;
     int64_t collisions_ = 0, wall_collisions_ = 0;

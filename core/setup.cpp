@@ -187,14 +187,17 @@ void Engine::build_shells() {
 bool Engine::build_shells_once() {
     const size_t n = size();
     rows_.reset(n);
-    cells_.reset(cell_, world_.period, extent(spheres_, world_.period), n, *kernels_);
+    Vec3 centre, size{kNever, kNever, kNever};
+    if (!room(centre, size)) size = {kNever, kNever, kNever};
+    cells_.reset(cell_, world_.period, extent(spheres_, world_.period), size, n, *kernels_);
+    const auto shell_of = [this](int32_t j) { return shell(j); };
     widest_ = 0;
     size_t pairs = 0;
     for (size_t i = 0; i < n; ++i) {
         place_shell(int(i), motion(int(i), now_).x, 0);
         const Shell s = shell(int(i));
-        cells_.search(s, [this](int32_t j) { return shell(j); }, found_);
-        cells_.add(int(i), s);
+        cells_.search(s, shell_of, found_);
+        cells_.add(int(i), s, shell_of);
         pairs += found_.n;
         // 24 neighbours each, and one more pair for a lone giant, which may have all: no crowd.
         if (i >= 256 && pairs > 13 * i && least_widening_ < 0) return false;
@@ -207,6 +210,8 @@ bool Engine::build_shells_once() {
 }
 
 void Engine::predict_all() {
+    span_ = clock_.epoch;
+    focused_events_ = epoch_events_;
     focus();
     for (size_t i = 0; i < size(); ++i) find_event(int(i));
     calendar_.reset(pending(), now_);
@@ -354,13 +359,14 @@ Overlap first_overlap(const std::vector<StartSphere>& spheres, const Vec3& perio
     const Vec3 inverse{period.x > 0 ? 1 / period.x : 0, period.y > 0 ? 1 / period.y : 0,
                        period.z > 0 ? 1 / period.z : 0};
     Cells cells;
-    cells.reset(2 * median_radius(packed) * (1 + 1e-9), period, extent(packed, period),
-                spheres.size(), kernels());
+    const Vec3 size = extent(packed, period);
+    cells.reset(2 * median_radius(packed) * (1 + 1e-9), period, size, size, spheres.size(),
+                kernels());
     Found found;
     const auto shell = [&](int32_t i) { return Shell{packed[size_t(i)].x, packed[size_t(i)].r}; };
     for (size_t i = 0; i < spheres.size(); ++i) {
         cells.search(shell(int32_t(i)), shell, found);
-        cells.add(int(i), shell(int32_t(i)));
+        cells.add(int(i), shell(int32_t(i)), shell);
         for (const int32_t j : found.ids()) {
             if (spheres[i].fixed && spheres[size_t(j)].fixed) continue;
             const Vec3 d = packed[i].x - packed[size_t(j)].x;
