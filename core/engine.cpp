@@ -33,8 +33,7 @@ constexpr size_t kLogCapacity = size_t(1) << 17;
 
 }  // namespace
 
-Engine::Engine(const std::vector<StartSphere>& start, double time, const World& world,
-               const Tuning& tuning)
+Engine::Engine(const StartSpheres& start, double time, const World& world, const Tuning& tuning)
     : world_(world),
       kernels_(&kernels(tuning.simd)),
       sort_(tuning.sort),
@@ -62,7 +61,7 @@ Engine::Engine(const std::vector<StartSphere>& start, double time, const World& 
     if (inelastic) watches_.resize(n);
     if (world_.contact_time > 0) last_touch_.assign(n, -kNever);
     for (size_t i = 0; i < n; ++i) {
-        const StartSphere& s = start[i];
+        const StartSphere s = start[i];
         labels_[i] = places_[i] = int32_t(i);
         spheres_[i] = {s.position, 0, s.velocity, s.radius};
         bodies_[i].mass = s.fixed ? kNever : s.mass;

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -40,6 +41,21 @@ struct StartSphere {  // one sphere as it comes in and goes out
     bool fixed = false, resting = false;
     Image image;
     uint32_t count = 0;
+};
+
+// The spheres of a start, read one by one from wherever they are: ten million fill a gigabyte.
+class StartSpheres {
+public:
+    StartSpheres(const std::vector<StartSphere>& all)
+        : n_(all.size()), one_([&all](size_t i) { return all[i]; }) {}
+    StartSpheres(size_t n, std::function<StartSphere(size_t)> one)
+        : n_(n), one_(std::move(one)) {}
+    size_t size() const { return n_; }
+    StartSphere operator[](size_t i) const { return one_(i); }
+
+private:
+    size_t n_;
+    std::function<StartSphere(size_t)> one_;
 };
 
 struct Record {  // one event as Python sees it, 40 bytes; time counts from the batch's start
@@ -81,8 +97,7 @@ struct Relative {
 
 class Engine {
 public:
-    Engine(const std::vector<StartSphere>& start, double time, const World& world,
-           const Tuning& tuning);
+    Engine(const StartSpheres& start, double time, const World& world, const Tuning& tuning);
 
     Stop advance(double until, int64_t max_collisions, int64_t max_events);
 
@@ -362,6 +377,6 @@ struct Overlap {
     int32_t i = kNone, j = kNone;
     double depth = 0;
 };
-Overlap first_overlap(const std::vector<StartSphere>& spheres, const Vec3& period);
+Overlap first_overlap(const StartSpheres& spheres, const Vec3& period);
 
 }  // namespace carom

@@ -44,7 +44,9 @@ public:
         return true;
     }
     void clear() {
-        cells_.assign(size_t(n_[0]) * size_t(n_[1]) * size_t(n_[2]), GridCell{});
+        const size_t n = size_t(n_[0]) * size_t(n_[1]) * size_t(n_[2]);
+        cells_.reserve(n + n / 16);  // room that is not used is not taken
+        cells_.assign(n, GridCell{});
         free_ = -1;
     }
 

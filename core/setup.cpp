@@ -11,8 +11,11 @@ namespace {
 constexpr double kSpherical = 4.18879020478639098;  // 4 pi / 3
 constexpr double kDilute = 0.12;                    // packing fraction up to which a grid is faster
 constexpr double kPerCell = 1;                      // spheres in a cell of it
+constexpr size_t kMany = size_t(1) << 22;           // so many take too much memory in lists
 
 double median_radius(const Array<Sphere>& spheres) {
+    const double first = spheres.front().r;
+    if (std::ranges::all_of(spheres, [&](const Sphere& s) { return s.r == first; })) return first;
     std::vector<double> r;
     r.reserve(spheres.size());
     for (const Sphere& s : spheres) r.push_back(s.r);
@@ -43,7 +46,7 @@ void Engine::choose_shells(const Tuning& tuning) {
     constexpr double kNeighbours = 11;
     if (!shells_on_) return;
     gridded_ = glancing_ = choose_grid(tuning);
-    if (gridded_) return glances_.resize(size());
+    if (gridded_) return;
     const double r = median_radius(spheres_);
     double largest = 0, giants = 0;
     const Vec3 box = extent(spheres_, world_.period);
@@ -74,7 +77,6 @@ void Engine::choose_shells(const Tuning& tuning) {
     least_widening_ = 0;
     while (margin(least_widening_ - 1) >= 0.1 * r) --least_widening_;
     glancing_ = !gravity_ && !several_images_;
-    if (glancing_) glances_.resize(size());
     if (several_images_) images_.resize(size());
 }
 
@@ -149,7 +151,8 @@ bool Engine::choose_grid(const Tuning& tuning) {
     if (!room(centre, size)) return false;
     const double volume = size.x * size.y * size.z;
     const double packing = kSpherical * section / volume;
-    if (tuning.grid < 0 && packing > kDilute) return false;
+    if (tuning.grid < 0 && packing > kDilute && spheres_.size() < kMany)
+        return false;
     if (largest > 2 * median_radius(spheres_)) return false;
     const double width = std::max(2 * largest * (1 + 1e-6),
                                   std::cbrt(kPerCell * volume / double(size_t(spheres_.size()))));
@@ -351,20 +354,21 @@ void Engine::restore(const std::string& bytes) {
     predict_all();
 }
 
-Overlap first_overlap(const std::vector<StartSphere>& spheres, const Vec3& period) {
+Overlap first_overlap(const StartSpheres& spheres, const Vec3& period) {
     Overlap worst;
-    if (spheres.empty()) return worst;
+    const size_t n = spheres.size();
+    if (n == 0) return worst;
     Array<Sphere> packed;
-    for (const StartSphere& s : spheres) packed.push_back({s.position, 0, s.velocity, s.radius});
+    packed.reserve(n);
+    for (size_t i = 0; i < n; ++i) packed.push_back({spheres[i].position, 0, {}, spheres[i].radius});
     const Vec3 inverse{period.x > 0 ? 1 / period.x : 0, period.y > 0 ? 1 / period.y : 0,
                        period.z > 0 ? 1 / period.z : 0};
     Cells cells;
     const Vec3 size = extent(packed, period);
-    cells.reset(2 * median_radius(packed) * (1 + 1e-9), period, size, size, spheres.size(),
-                kernels());
+    cells.reset(2 * median_radius(packed) * (1 + 1e-9), period, size, size, n, kernels());
     Found found;
     const auto shell = [&](int32_t i) { return Shell{packed[size_t(i)].x, packed[size_t(i)].r}; };
-    for (size_t i = 0; i < spheres.size(); ++i) {
+    for (size_t i = 0; i < n; ++i) {
         cells.search(shell(int32_t(i)), shell, found);
         cells.add(int(i), shell(int32_t(i)), shell);
         for (const int32_t j : found.ids()) {

@@ -147,6 +147,7 @@ void Engine::look_again() {
 void Engine::focus() {
     focused_until_ = now_ + 1.5 * span_;
     if (!glancing_) return;
+    glances_.resize(size());
     far_ = size() > 8000;
     const double epoch = span_;
     double energy = 0;
