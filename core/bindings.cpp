@@ -48,19 +48,6 @@ auto array_of(std::unique_ptr<T[]>&& data, Shape... shape) {
     return nb::ndarray<nb::numpy, T>(held, {size_t(shape)...}, owner);
 }
 
-std::vector<carom::StartSphere> spheres(const Vectors& position, const Numbers& radius,
-                                        const Flags& fixed) {
-    std::vector<carom::StartSphere> out(position.shape(0));
-    if (radius.shape(0) != out.size() || fixed.shape(0) != out.size())
-        throw nb::value_error("arrays of different lengths");
-    for (size_t i = 0; i < out.size(); ++i) {
-        out[i].position = row(position, i);
-        out[i].radius = radius(i);
-        out[i].fixed = fixed(i);
-    }
-    return out;
-}
-
 // One row per wall: kind, bounce-back, normal (3), offset, restitution.
 std::vector<carom::Wall> walls_from(const WallRows& rows) {
     std::vector<carom::Wall> walls;
@@ -76,18 +63,21 @@ auto make_engine(const Vectors& position, const Vectors& velocity, const Numbers
                  const WallRows& walls, double restitution, double contact_time,
                  const Three& gravity, bool collide, double margin, double cell, bool log,
                  double slice, const std::string& simd, bool sort, int grid, bool profile) {
-    std::vector<carom::StartSphere> start = spheres(position, radius, fixed);
-    const size_t n = start.size();
-    if (velocity.shape(0) != n || mass.shape(0) != n || resting.shape(0) != n ||
-        image.shape(0) != n || count.shape(0) != n || n == 0)
+    const size_t n = position.shape(0);
+    if (velocity.shape(0) != n || mass.shape(0) != n || radius.shape(0) != n ||
+        fixed.shape(0) != n || resting.shape(0) != n || image.shape(0) != n ||
+        count.shape(0) != n || n == 0)
         throw nb::value_error("arrays of different lengths, or no sphere");
-    for (size_t i = 0; i < n; ++i) {
-        start[i].velocity = row(velocity, i);
-        start[i].mass = mass(i);
-        start[i].resting = resting(i);
-        start[i].image = {image(i, 0), image(i, 1), image(i, 2)};
-        start[i].count = count(i);
-    }
+    const carom::StartSpheres start(n, [&](size_t i) {
+        return carom::StartSphere{row(position, i),
+                                  row(velocity, i),
+                                  radius(i),
+                                  mass(i),
+                                  fixed(i),
+                                  resting(i),
+                                  {image(i, 0), image(i, 1), image(i, 2)},
+                                  count(i)};
+    });
     const carom::World world{three(period), walls_from(walls), restitution,
                              contact_time,  three(gravity),    collide};
     const nb::gil_scoped_release release;
@@ -217,8 +207,17 @@ NB_MODULE(_core, m) {
         "first_overlap",
         [](const Vectors& position, const Numbers& radius, const Flags& fixed,
            const Three& period) -> std::optional<std::tuple<int, int, double>> {
-            const carom::Overlap o =
-                carom::first_overlap(spheres(position, radius, fixed), three(period));
+            const size_t n = position.shape(0);
+            if (radius.shape(0) != n || fixed.shape(0) != n)
+                throw nb::value_error("arrays of different lengths");
+            const carom::StartSpheres spheres(n, [&](size_t i) {
+                carom::StartSphere s;
+                s.position = row(position, i);
+                s.radius = radius(i);
+                s.fixed = fixed(i);
+                return s;
+            });
+            const carom::Overlap o = carom::first_overlap(spheres, three(period));
             if (o.i == carom::kNone) return std::nullopt;
             return std::make_tuple(o.i, o.j, o.depth);
         },

@@ -41,18 +41,22 @@ public:
     // Empties it and chooses buckets for the events now pending, a few to each.
     void reset(const Pending& p, double now) {
         std::vector<double> waits;
-        for (size_t i = 0; i < p.n; ++i)
+        const size_t each = p.n / kAsked + 1;  // some tell of all
+        size_t pending = 0;
+        for (size_t i = 0; i < p.n; ++i) pending += p.events[i].t < kNever;
+        for (size_t i = 0; i < p.n; i += each)
             if (p.events[i].t < kNever) waits.push_back(p.events[i].t - now);
         inverse_width_ = 1;
         if (!waits.empty()) {
             // The median wait, blind to the few far away, stands for the mean.
             const auto middle = waits.begin() + std::ptrdiff_t(waits.size() / 2);
             std::nth_element(waits.begin(), middle, waits.end());
-            const double width = kPerBucket * *middle / double(waits.size());
+            const double width = kPerBucket * *middle / double(pending);
             if (width > 1e-250) inverse_width_ = 1 / width;
         }
         size_t buckets = 64;
-        while (buckets * 2 < p.n) buckets *= 2;
+        while (buckets * (p.n < kMany ? 2 : 4) < p.n) buckets *= 2;
+        lines_.reserve(buckets + buckets / 16);  // room that is not used is not taken
         lines_.assign(buckets, Line{});
         mask_ = int64_t(buckets) - 1;
         spare_ = -1;
@@ -126,6 +130,8 @@ public:
 
 private:
     static constexpr double kPerBucket = 6;
+    static constexpr size_t kAsked = 10000;
+    static constexpr size_t kMany = size_t(1) << 22;  // where memory is dear
     static constexpr int kIds = 14, kFew = 48;
     struct alignas(64) Line {
         int32_t n = 0;

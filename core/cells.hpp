@@ -4,7 +4,9 @@
 // so that whatever it can touch on its own or a higher level lies within the 27 cells around it.
 // Each level is a torus of cells: along an open axis, cell c is kept in slot c mod n. Far places
 // may share a slot; the distance test tells them apart. So the cells need no borders, and follow
-// the spheres wherever they fly.
+// the spheres wherever they fly. A level has about as many slots as shells: it is laid out anew
+// when these have become many more, or many fewer, as in a cloud whose spheres need ever wider
+// shells.
 //
 // A cell is one cache line: seven shells with their place in the cell to 1/256 of its width. Who is
 // near is decided by integer arithmetic on that line alone.
@@ -13,6 +15,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "memory.hpp"
@@ -41,30 +44,40 @@ struct Found {
 class Cells {
 public:
     // `width`: of the lowest level's cells. `period`: 0 on axes that are not periodic. `extent`: of
-    // the spheres at the start, along each axis.
-    void reset(double width, const Vec3& period, const Vec3& extent, size_t count,
+    // the spheres at the start, along each axis. `room`: which they never leave, endless in open
+    // space.
+    void reset(double width, const Vec3& period, const Vec3& extent, const Vec3& room, size_t count,
                const Kernels& kernels) {
         width_ = width;
         period_ = period;
         extent_ = extent;
+        room_ = room;
         count_ = count;
         kernels_ = &kernels;
         inverse_period_ = inverse(period);
-        levels_.clear();
-        lines_.clear();
-        free_ = -1;
+        for (size_t k = 1; k < levels_.size(); ++k) levels_[k].lines = {};
+        levels_.resize(1);
+        levels_[0].population = 0;
+        levels_[0].n[0] = 0;
+        lay_out(levels_[0], width_, int64_t(count));
+        clear(levels_[0]);
     }
 
-    void add(int i, const Shell& s) {
-        Level& level = levels_[size_t(level_of(s.reach))];
-        ++level.population;
+    // `shell_of` those that are in the cells is asked when a level is laid out anew.
+    template <class ShellOf>
+    void add(int i, const Shell& s, const ShellOf& shell_of) {
+        const int k = level_of(s.reach);
+        Level& level = levels_[size_t(k)];
+        if (++level.population > level.most) fit(k, shell_of);
         push(level, i, s);
     }
 
-    void remove(int i, const Shell& s) {
-        Level& level = levels_[size_t(level_of(s.reach))];
-        --level.population;
-        take(slot_of(level, in_cells(s.centre, level)), i);
+    template <class ShellOf>
+    void remove(int i, const Shell& s, const ShellOf& shell_of) {
+        const int k = level_of(s.reach);
+        Level& level = levels_[size_t(k)];
+        take(level, slot_of(level, in_cells(s.centre, level)), i);
+        if (--level.population < level.least) fit(k, shell_of);
     }
 
     // Every j with |centre - centre_j| < reach + reach_j (nearest image) or a hair more, none
@@ -90,8 +103,7 @@ public:
         three(u.z, l.n[2], c);
         for (const int64_t z : c)
             for (const int64_t y : b)
-                for (const int64_t xs : a)
-                    fetch(&lines_[size_t(l.first + (z * l.n[1] + y) * l.n[0] + xs)]);
+                for (const int64_t xs : a) fetch(&l.lines[size_t((z * l.n[1] + y) * l.n[0] + xs)]);
     }
 
     double distance2(const Vec3& a, const Vec3& b) const {
@@ -100,7 +112,11 @@ public:
         return norm2(d);
     }
 
-    size_t bytes() const { return lines_.capacity() * sizeof(Line); }
+    size_t bytes() const {
+        size_t all = 0;
+        for (const Level& level : levels_) all += level.lines.capacity() * sizeof(Line);
+        return all;
+    }
 
 private:
     using Line = CellLine;
@@ -108,9 +124,12 @@ private:
         Vec3 inverse_width;
         double steps[3];  // of a cell's width: 255 along the widest axis
         double steps_per_length;
-        int64_t n[3];   // cells per axis
-        int64_t first;  // index of its first line
+        int64_t n[3] = {0, 0, 0};  // cells per axis
+        bool folded = false;       // far places may share a cell
         int64_t population = 0;
+        int64_t most = 0, least = 0;  // for which it is laid out
+        Array<Line> lines;            // of each cell, and those behind
+        int32_t free = -1;            // chain of spare lines
     };
 
     static Vec3 inverse(const Vec3& p) {
@@ -120,36 +139,58 @@ private:
     int level_of(double reach) {
         int k = 0;
         for (double w = width_; w < 2 * reach; w *= 2) ++k;
-        while (int(levels_.size()) <= k) levels_.push_back(make_level(int(levels_.size())));
+        if (int(levels_.size()) <= k) levels_.resize(size_t(k) + 1);
         return k;
     }
 
-    // As many cells as the spheres' extent holds, but no more than some for each shell expected:
-    // an axis that would have more is folded, on an open axis a slot serving several places, on a
-    // periodic one with wider cells.
-    Level make_level(int k) {
-        const double w = std::ldexp(width_, k);
-        double n[3] = {cells_along(extent_.x, w), cells_along(extent_.y, w),
-                       cells_along(extent_.z, w)};
-        const double most = std::max(64.0, std::ldexp(double(count_), -std::min(3 * k, 60)));
-        while (n[0] * n[1] * n[2] > most) {
+    // As many cells as the spheres' extent holds, but no more than shells expected: an axis that
+    // would have more is folded, on an open axis a slot serving several places, on a periodic one
+    // with wider cells. False if it is so already.
+    bool lay_out(Level& level, double w, int64_t expected) const {
+        const double p[3] = {period_.x, period_.y, period_.z};
+        const double side[3] = {extent_.x, extent_.y, extent_.z};
+        // The extent of the start says nothing of how far the wider shells are spread, but their
+        // number does.
+        double n[3];
+        for (int a = 0; a < 3; ++a) n[a] = cells_along(side[a], p[a] > 0 ? w : width_);
+        while (n[0] * n[1] * n[2] > std::max(64.0, double(expected))) {
             double& longest = *std::max_element(n, n + 3);
             longest = std::max(1.0, std::floor(longest / 2));
         }
-        const double p[3] = {period_.x, period_.y, period_.z};
+        bool changed = false;
         double inverse_width[3];
-        Level level;
         for (int a = 0; a < 3; ++a) {
             if (p[a] > 0) n[a] = std::min(n[a], std::max(1.0, std::floor(p[a] / w)));
-            level.n[a] = int64_t(n[a]);
             inverse_width[a] = p[a] > 0 ? n[a] / p[a] : 1 / w;
+            changed |= level.n[a] != int64_t(n[a]);
+            level.n[a] = int64_t(n[a]);
         }
+        level.folded = false;
+        const double room[3] = {room_.x, room_.y, room_.z};
+        for (int a = 0; a < 3; ++a) level.folded |= p[a] == 0 && n[a] * w < room[a];
+        const int64_t slots = level.n[0] * level.n[1] * level.n[2];
+        level.most = 2 * std::max(slots, expected);
+        level.least = slots > 64 ? slots / 16 : 0;
+        if (!changed) return false;
         level.inverse_width = {inverse_width[0], inverse_width[1], inverse_width[2]};
         level.steps_per_length = 255 * *std::min_element(inverse_width, inverse_width + 3);
         for (int a = 0; a < 3; ++a) level.steps[a] = level.steps_per_length / inverse_width[a];
-        level.first = int64_t(lines_.size());
-        lines_.resize(lines_.size() + size_t(level.n[0] * level.n[1] * level.n[2]));
-        return level;
+        return true;
+    }
+
+    template <class ShellOf>
+    void fit(int k, const ShellOf& shell_of) {
+        Level& level = levels_[size_t(k)];
+        if (!lay_out(level, std::ldexp(width_, k), level.population)) return;
+        const Array<Line> old = std::exchange(level.lines, {});
+        clear(level);
+        for (const Line& line : old)
+            for (const int32_t i : line.id)
+                if (i >= 0) push(level, i, shell_of(i));
+    }
+    static void clear(Level& level) {
+        level.lines.assign(size_t(level.n[0] * level.n[1] * level.n[2]), Line{});
+        level.free = -1;
     }
     // At least four: with fewer, every search would visit the same cells again and again.
     static double cells_along(double extent, double w) {
@@ -173,7 +214,7 @@ private:
     static int32_t slot_of(const Level& l, const Vec3& u) {
         const int64_t a = wrap(floored(u.x), l.n[0]), b = wrap(floored(u.y), l.n[1]),
                       c = wrap(floored(u.z), l.n[2]);
-        return int32_t(l.first + (c * l.n[1] + b) * l.n[0] + a);
+        return int32_t((c * l.n[1] + b) * l.n[0] + a);
     }
     // Place within the cell, in steps of which `steps` make a cell.
     static int fine(double u, double steps) { return int((u - floored(u)) * steps); }
@@ -193,13 +234,12 @@ private:
         if (!(count < double(n))) return {0, n, n, 0, false};
         return {wrap(own + lo, n), int64_t(count), n, -lo, count <= CellBlock::kMost};
     }
-    static void fill(CellBlock::Axis& a, const Range& r, double u, double steps, int64_t stride,
-                     int64_t first) {
+    static void fill(CellBlock::Axis& a, const Range& r, double u, double steps, int64_t stride) {
         a.n = int32_t(r.count);
         const int place = fine(u, steps);
         int64_t slot = r.first;
         for (int k = 0; k < a.n; ++k) {
-            a.line[k] = int32_t(first + slot * stride);
+            a.line[k] = int32_t(slot * stride);
             a.seen[k] = int16_t(place + int(nearest((r.before - k) * steps)));
             slot = slot + 1 == r.n ? 0 : slot + 1;
         }
@@ -217,15 +257,26 @@ private:
             return all(l, x, y, z, s, shell_of, out);
         CellBlock block;
         block.minus_reach = int16_t(-reach);
-        fill(block.x, x, u.x, l.steps[0], 1, 0);
-        fill(block.y, y, u.y, l.steps[1], x.n, 0);
-        fill(block.z, z, u.z, l.steps[2], x.n * y.n, l.first);
-        near(block, out);
+        fill(block.x, x, u.x, l.steps[0], 1);
+        fill(block.y, y, u.y, l.steps[1], x.n);
+        fill(block.z, z, u.z, l.steps[2], x.n * y.n);
+        const size_t before = out.n;
+        near(l, block, out);
+        if (!l.folded) return;
+        size_t kept = before;
+        for (size_t k = before; k < out.n; ++k) {
+            const int32_t j = out.id[k];
+            const Shell o = shell_of(j);
+            const double most = (s.reach + o.reach) * (1 + 1e-9);
+            out.id[kept] = j;
+            kept += distance2(s.centre, o.centre) < most * most;
+        }
+        out.n = kept;
     }
 
-    void near(const CellBlock& block, Found& out) const {
+    void near(const Level& l, const CellBlock& block, Found& out) const {
         for (;;) {
-            const int32_t more = kernels_->near(lines_.data(), block, &out.id[out.n],
+            const int32_t more = kernels_->near(l.lines.data(), block, &out.id[out.n],
                                                 int32_t(out.id.size() - out.n));
             if (more >= 0) {
                 out.n += size_t(more);
@@ -244,8 +295,8 @@ private:
                 visit(slot);
         };
         const auto look = [&](int64_t slot) {
-            for (auto at = int32_t(slot); at >= 0; at = lines_[size_t(at)].next) {
-                for (const int32_t j : lines_[size_t(at)].id) {
+            for (auto at = int32_t(slot); at >= 0; at = l.lines[size_t(at)].next) {
+                for (const int32_t j : l.lines[size_t(at)].id) {
                     if (j < 0) break;
                     const Shell o = shell_of(j);
                     const double near = s.reach + o.reach;
@@ -254,9 +305,8 @@ private:
             }
         };
         each(rz, [&](int64_t z) {
-            each(ry, [&](int64_t y) {
-                each(rx, [&](int64_t x) { look(l.first + (z * ry.n + y) * rx.n + x); });
-            });
+            each(ry,
+                 [&](int64_t y) { each(rx, [&](int64_t x) { look((z * ry.n + y) * rx.n + x); }); });
         });
     }
 
@@ -266,22 +316,22 @@ private:
         to.zr[at] = from.zr[k];
     }
 
-    void push(const Level& l, int i, const Shell& s) {
+    static void push(Level& l, int i, const Shell& s) {
         const Vec3 u = in_cells(s.centre, l);
         const auto slot = size_t(slot_of(l, u));
-        if (lines_[slot].full()) {  // its content moves to a line behind it
-            int32_t spare = free_;
+        if (l.lines[slot].full()) {  // its content moves to a line behind it
+            int32_t spare = l.free;
             if (spare >= 0) {
-                free_ = lines_[size_t(spare)].next;
+                l.free = l.lines[size_t(spare)].next;
             } else {
-                spare = int32_t(lines_.size());
-                grow(lines_);
+                spare = int32_t(l.lines.size());
+                grow(l.lines);
             }
-            lines_[size_t(spare)] = lines_[slot];
-            lines_[slot] = Line{};
-            lines_[slot].next = spare;
+            l.lines[size_t(spare)] = l.lines[slot];
+            l.lines[slot] = Line{};
+            l.lines[slot].next = spare;
         }
-        Line& head = lines_[slot];
+        Line& head = l.lines[slot];
         const int k = head.size();
         head.id[k] = i;
         head.xy[k] = {uint8_t(fine(u.x, l.steps[0])), uint8_t(fine(u.y, l.steps[1]))};
@@ -289,10 +339,10 @@ private:
                       uint8_t(std::min(fine_reach(s.reach, l), 255))};
     }
 
-    void take(int32_t slot, int i) {
-        Line& head = lines_[size_t(slot)];
-        for (int32_t c = slot; c >= 0; c = lines_[size_t(c)].next) {
-            Line& line = lines_[size_t(c)];
+    static void take(Level& l, int32_t slot, int i) {
+        Line& head = l.lines[size_t(slot)];
+        for (int32_t c = slot; c >= 0; c = l.lines[size_t(c)].next) {
+            Line& line = l.lines[size_t(c)];
             const int k = line.find(i);
             if (k < 0) continue;
             const int last = head.size() - 1;
@@ -300,21 +350,20 @@ private:
             head.id[last] = -1;
             if (last == 0 && head.next >= 0) {  // the line behind becomes the head
                 const int32_t behind = head.next;
-                head = lines_[size_t(behind)];
-                lines_[size_t(behind)].next = free_;
-                free_ = behind;
+                head = l.lines[size_t(behind)];
+                l.lines[size_t(behind)] = Line{};
+                l.lines[size_t(behind)].next = l.free;
+                l.free = behind;
             }
             return;
         }
     }
 
     double width_ = 1;
-    Vec3 period_, inverse_period_, extent_;
+    Vec3 period_, inverse_period_, extent_, room_;
     size_t count_ = 0;
     std::vector<Level> levels_;
     const Kernels* kernels_ = nullptr;
-    Array<Line> lines_;
-    int32_t free_ = -1;  // chain of spare lines
 };
 
 }  // namespace carom

@@ -13,9 +13,9 @@ constexpr size_t kLogCapacity = size_t(1) << 17;
 
 }  // namespace
 
-Engine::Engine(const std::vector<StartSphere>& start, double time, const World& world,
-               const Tuning& tuning)
+Engine::Engine(const StartSpheres& start, double time, const World& world, const Tuning& tuning)
     : world_(world),
+      tuning_(tuning),
       kernels_(&kernels(tuning.simd)),
       sort_(tuning.sort),
       logging_(tuning.log),
@@ -43,7 +43,7 @@ Engine::Engine(const std::vector<StartSphere>& start, double time, const World& 
     if (inelastic) watches_.resize(n);
     if (world_.contact_time > 0) last_touch_.assign(n, -kNever);
     for (size_t i = 0; i < n; ++i) {
-        const StartSphere& s = start[i];
+        const StartSphere s = start[i];
         labels_[i] = places_[i] = int32_t(i);
         spheres_[i] = {s.position, 0, s.velocity, s.radius};
         bodies_[i].mass = s.fixed ? kNever : s.mass;
@@ -59,7 +59,6 @@ Engine::Engine(const std::vector<StartSphere>& start, double time, const World& 
     log_start_ = time;
     log_shift_ = user_;
     choose_shells(tuning);
-    plain_ = glancing_ && world_.restitution == 1 && last_touch_.empty();
     sort_in_memory();
     build_shells();
     predict_all();
@@ -105,7 +104,7 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
         calendar_.pop();
         profile_.lap(Profile::queue);
         now_ = due.t;
-        if (now_ > focused_until_) focus();
+        if (now_ > focused_until_) look_again();
         const Event& event = events_[size_t(due.id)];
         if (next_partner(event) == kEscape) {
             gridded_ ? change_cell(due.id) : escape(due.id);

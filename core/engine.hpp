@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -41,6 +42,20 @@ struct StartSphere {  // one sphere as it comes in and goes out
     bool fixed = false, resting = false;
     Image image;
     uint32_t count = 0;
+};
+
+// The spheres of a start, read one by one from wherever they are: ten million fill a gigabyte.
+class StartSpheres {
+public:
+    StartSpheres(const std::vector<StartSphere>& all)
+        : n_(all.size()), one_([&all](size_t i) { return all[i]; }) {}
+    StartSpheres(size_t n, std::function<StartSphere(size_t)> one) : n_(n), one_(std::move(one)) {}
+    size_t size() const { return n_; }
+    StartSphere operator[](size_t i) const { return one_(i); }
+
+private:
+    size_t n_;
+    std::function<StartSphere(size_t)> one_;
 };
 
 struct Record {  // one event as Python sees it, 40 bytes; time counts from the batch's start
@@ -83,8 +98,7 @@ struct Relative {
 
 class Engine {
 public:
-    Engine(const std::vector<StartSphere>& start, double time, const World& world,
-           const Tuning& tuning);
+    Engine(const StartSpheres& start, double time, const World& world, const Tuning& tuning);
 
     Stop advance(double until, int64_t max_collisions, int64_t max_events);
 
@@ -147,7 +161,7 @@ private:
     // setup.cpp
     bool choose_grid(const Tuning& tuning);
     bool room(Vec3& centre, Vec3& size) const;
-    void build_grid();
+    bool build_grid();
     void choose_shells(const Tuning& tuning);
     void choose_epoch(double time);
     void build_shells();
@@ -200,6 +214,8 @@ private:
     void escape(int i);
     Vec3 ahead(const Motion& at, double r, int widening) const;
     void make_shell(int i);
+    void renew_shell(int i);
+    void join(int32_t j, int i);
     bool crowded(int i) const;
     int least_widening(int i) const { return spheres_[size_t(i)].r > giant_ ? 0 : least_widening_; }
     double margin(int widening) const;
@@ -207,6 +223,7 @@ private:
     void place_shell(int i, const Vec3& centre, int widening);
     void exchange(int i);
     void focus();
+    void look_again();
 
     // ahead.cpp
     void look_ahead() const;
@@ -230,6 +247,7 @@ private:
     void log(double t, int32_t i, int32_t j, const Vec3& impulse);
 
     World world_;
+    Tuning tuning_;
     Vec3 inverse_period_;
     bool gravity_ = false, periodic_ = false;
     bool plain_ = false;           // free flight, one image, restitution 1
@@ -258,7 +276,9 @@ private:
     const Kernels* kernels_;
     bool glancing_ = false;  // one image, no gravity: pairs are looked through at a glance
     Lens lens_;
+    double span_ = 1;           // for such a time: an epoch, longer where little happens
     double focused_until_ = 0;  // glances are too old after that
+    int64_t focused_events_ = 0;
     Array<Glance> glances_;
 
     bool gridded_ = false;  // neighbours are found on a grid, not in lists
@@ -278,6 +298,7 @@ private:
     Cells cells_;
     Calendar calendar_;
     Found found_;
+    std::vector<int32_t> outgrown_;  // rows that have become too long
 
     Work work_;
     Profile profile_;
@@ -380,6 +401,6 @@ struct Overlap {
     int32_t i = kNone, j = kNone;
     double depth = 0;
 };
-Overlap first_overlap(const std::vector<StartSphere>& spheres, const Vec3& period);
+Overlap first_overlap(const StartSpheres& spheres, const Vec3& period);
 
 }  // namespace carom

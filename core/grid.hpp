@@ -54,7 +54,9 @@ public:
         return true;
     }
     void clear() {
-        cells_.assign(size_t(n_[0]) * size_t(n_[1]) * size_t(n_[2]), GridCell{});
+        const size_t n = size_t(n_[0]) * size_t(n_[1]) * size_t(n_[2]);
+        cells_.reserve(n + n / 16);  // room that is not used is not taken
+        cells_.assign(n, GridCell{});
         free_ = -1;
     }
 
@@ -193,6 +195,9 @@ public:
                 for (int x = 0; x < b.x.n; ++x)
                     fetch(&cells_[size_t(b.z.cell[z] + b.y.cell[y] + b.x.cell[x])]);
     }
+
+    // Cells behind others.
+    size_t links() const { return cells_.size() - size_t(n_[0]) * size_t(n_[1]) * size_t(n_[2]); }
 
     const GridCell* cells() const { return cells_.data(); }
     size_t bytes() const { return cells_.capacity() * sizeof(GridCell); }

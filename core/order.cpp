@@ -18,15 +18,19 @@ uint64_t spread(uint32_t x) {
     return (v | v << 2) & 0x1249249249249249;
 }
 
-// Moves what was at order[k] to k, in all arrays, without a second copy of any.
+// A place in the order, and in the lower half the sphere's number.
+using Key = uint64_t;
+int32_t number_in(Key key) { return int32_t(uint32_t(key)); }
+
+// Moves what was at number_in(order[k]) to k, in all arrays, without a second copy of any.
 template <class... Arrays>
-void arrange(const Array<int32_t>& order, Arrays&... arrays) {
+void arrange(const Array<Key>& order, Arrays&... arrays) {
     std::vector<bool> done(order.size());
     for (size_t start = 0; start < order.size(); ++start) {
         if (done[start]) continue;
         for (size_t k = start; !done[k];) {
             done[k] = true;
-            const auto from = size_t(order[k]);
+            const auto from = size_t(number_in(order[k]));
             if (from != start) (std::swap(arrays[k], arrays[from]), ...);
             k = from;
         }
@@ -40,20 +44,26 @@ void arrange(const Array<int32_t>& order, Arrays&... arrays) {
 bool Engine::sort_in_memory() {
     constexpr size_t kFew = 1024;
     if (!sort_ || size() < kFew) return false;
-    const double width = 2 * common_;
-    std::vector<std::pair<uint64_t, int32_t>> keys(size());
-    for (size_t i = 0; i < size(); ++i) {
-        const Vec3& x = spheres_[i].x;
-        const auto cell = [width](double a) {
-            return uint32_t(int64_t(std::clamp(a / width, -1e6, 1e6)) + (int64_t(1) << 20));
-        };
-        keys[i] = {spread(cell(x.x)) | spread(cell(x.y)) << 1 | spread(cell(x.z)) << 2, int32_t(i)};
+    // Ten bits for each axis, of the longest; the number below tells which sphere it is.
+    Vec3 lo = spheres_[0].x, hi = lo;
+    for (const Sphere& s : spheres_) {
+        lo = {std::min(lo.x, s.x.x), std::min(lo.y, s.x.y), std::min(lo.z, s.x.z)};
+        hi = {std::max(hi.x, s.x.x), std::max(hi.y, s.x.y), std::max(hi.z, s.x.z)};
     }
-    std::sort(keys.begin(), keys.end());
-    Array<int32_t> order(size());
-    for (size_t k = 0; k < size(); ++k) order[k] = keys[k].second;
+    const double longest = std::max({hi.x - lo.x, hi.y - lo.y, hi.z - lo.z});
+    const double width = std::max(longest / 1023, 1e-300);
+    Array<Key> order(size());
+    for (size_t i = 0; i < size(); ++i) {
+        const Vec3 x = spheres_[i].x - lo;
+        const auto cell = [width](double a) {
+            return a < 1023 * width ? uint32_t(a / width) : uint32_t(1023);
+        };
+        order[i] = (spread(cell(x.x)) | spread(cell(x.y)) << 1 | spread(cell(x.z)) << 2) << 32 | i;
+    }
+    std::sort(order.begin(), order.end());
 
-    for (size_t k = 0; k < size(); ++k) places_[size_t(order[k])] = int32_t(k);  // old to new
+    for (size_t k = 0; k < size(); ++k)
+        places_[size_t(number_in(order[k]))] = int32_t(k);  // old to new
     for (Body& body : bodies_)
         if (body.last >= 0) body.last = places_[size_t(body.last)];
     const auto arrange_if_used = [&order](auto& array) {

@@ -12,8 +12,11 @@ namespace {
 constexpr double kSpherical = 4.18879020478639098;  // 4 pi / 3
 constexpr double kDilute = 0.3;                     // packing fraction up to which a grid is faster
 constexpr double kPerCell = 0.8;                    // spheres in a cell of it
+constexpr size_t kMany = size_t(1) << 22;           // so many take too much memory in lists
 
 double median_radius(const Array<Sphere>& spheres) {
+    const double first = spheres.front().r;
+    if (std::ranges::all_of(spheres, [&](const Sphere& s) { return s.r == first; })) return first;
     std::vector<double> r;
     r.reserve(spheres.size());
     for (const Sphere& s : spheres) r.push_back(s.r);
@@ -44,7 +47,8 @@ void Engine::choose_shells(const Tuning& tuning) {
     constexpr double kNeighbours = 11;
     if (!shells_on_) return;
     gridded_ = glancing_ = choose_grid(tuning);
-    if (gridded_) return glances_.resize(size());
+    plain_ = gridded_ && world_.restitution == 1 && last_touch_.empty();
+    if (gridded_) return;
     const double r = median_radius(spheres_);
     double largest = 0, giants = 0;
     const Vec3 box = extent(spheres_, world_.period);
@@ -75,7 +79,7 @@ void Engine::choose_shells(const Tuning& tuning) {
     least_widening_ = 0;
     while (margin(least_widening_ - 1) >= 0.1 * r) --least_widening_;
     glancing_ = !gravity_ && !several_images_;
-    if (glancing_) glances_.resize(size());
+    plain_ = glancing_ && world_.restitution == 1 && last_touch_.empty();
     if (several_images_) images_.resize(size());
 }
 
@@ -150,7 +154,7 @@ bool Engine::choose_grid(const Tuning& tuning) {
     if (!room(centre, size)) return false;
     const double volume = size.x * size.y * size.z;
     const double packing = kSpherical * section / volume;
-    if (tuning.grid < 0 && packing > kDilute) return false;
+    if (tuning.grid < 0 && packing > kDilute && spheres_.size() < kMany) return false;
     if (largest > 2 * median_radius(spheres_)) return false;
     const double width = std::max(2 * largest * (1 + 1e-6),
                                   std::cbrt(kPerCell * volume / double(size_t(spheres_.size()))));
@@ -164,19 +168,27 @@ bool Engine::choose_grid(const Tuning& tuning) {
     return true;
 }
 
-void Engine::build_grid() {
+// False if many share few cells: the mean density says nothing of a cluster in a large box.
+bool Engine::build_grid() {
     grid_.clear();
     for (size_t i = 0; i < size(); ++i) {
+        if (grid_.links() > 64 + size() / 16) return false;
         const Vec3 x = motion(int(i), now_).x;  // may have left the box it is anchored in
         const Grid::Cell cell = grid_.cell_of(x - whole_boxes(x) * world_.period);
         grid_.add(int32_t(i), cell);
         events_[i].cell = Grid::pack(cell, 0);
     }
+    return true;
 }
 
 void Engine::build_shells() {
     if (!shells_on_) return;
-    if (gridded_) return build_grid();
+    if (gridded_) {
+        if (build_grid()) return;
+        Tuning lists = tuning_;
+        lists.grid = 0;
+        choose_shells(lists);
+    }
     while (!build_shells_once()) {
         margin_ *= 0.5;
         ++least_widening_;
@@ -189,14 +201,17 @@ void Engine::build_shells() {
 bool Engine::build_shells_once() {
     const size_t n = size();
     rows_.reset(n);
-    cells_.reset(cell_, world_.period, extent(spheres_, world_.period), n, *kernels_);
+    Vec3 centre, size{kNever, kNever, kNever};
+    if (!room(centre, size)) size = {kNever, kNever, kNever};
+    cells_.reset(cell_, world_.period, extent(spheres_, world_.period), size, n, *kernels_);
+    const auto shell_of = [this](int32_t j) { return shell(j); };
     widest_ = 0;
     size_t pairs = 0;
     for (size_t i = 0; i < n; ++i) {
         place_shell(int(i), motion(int(i), now_).x, 0);
         const Shell s = shell(int(i));
-        cells_.search(s, [this](int32_t j) { return shell(j); }, found_);
-        cells_.add(int(i), s);
+        cells_.search(s, shell_of, found_);
+        cells_.add(int(i), s, shell_of);
         pairs += found_.n;
         // 24 neighbours each, and one more pair for a lone giant, which may have all: no crowd.
         if (i >= 256 && pairs > 13 * i && least_widening_ < 0) return false;
@@ -209,6 +224,8 @@ bool Engine::build_shells_once() {
 }
 
 void Engine::predict_all() {
+    span_ = clock_.epoch;
+    focused_events_ = epoch_events_;
     focus();
     for (size_t i = 0; i < size(); ++i) find_event(int(i));
     calendar_.reset(pending(), now_);
@@ -350,22 +367,25 @@ void Engine::restore(const std::string& bytes) {
     predict_all();
 }
 
-Overlap first_overlap(const std::vector<StartSphere>& spheres, const Vec3& period) {
+Overlap first_overlap(const StartSpheres& spheres, const Vec3& period) {
     const PlainArithmetic plain;
     Overlap worst;
-    if (spheres.empty()) return worst;
+    const size_t n = spheres.size();
+    if (n == 0) return worst;
     Array<Sphere> packed;
-    for (const StartSphere& s : spheres) packed.push_back({s.position, 0, s.velocity, s.radius});
+    packed.reserve(n);
+    for (size_t i = 0; i < n; ++i)
+        packed.push_back({spheres[i].position, 0, {}, spheres[i].radius});
     const Vec3 inverse{period.x > 0 ? 1 / period.x : 0, period.y > 0 ? 1 / period.y : 0,
                        period.z > 0 ? 1 / period.z : 0};
     Cells cells;
-    cells.reset(2 * median_radius(packed) * (1 + 1e-9), period, extent(packed, period),
-                spheres.size(), kernels());
+    const Vec3 size = extent(packed, period);
+    cells.reset(2 * median_radius(packed) * (1 + 1e-9), period, size, size, n, kernels());
     Found found;
     const auto shell = [&](int32_t i) { return Shell{packed[size_t(i)].x, packed[size_t(i)].r}; };
-    for (size_t i = 0; i < spheres.size(); ++i) {
+    for (size_t i = 0; i < n; ++i) {
         cells.search(shell(int32_t(i)), shell, found);
-        cells.add(int(i), shell(int32_t(i)));
+        cells.add(int(i), shell(int32_t(i)), shell);
         for (const int32_t j : found.ids()) {
             if (spheres[i].fixed && spheres[size_t(j)].fixed) continue;
             const Vec3 d = packed[i].x - packed[size_t(j)].x;

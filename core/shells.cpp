@@ -9,7 +9,10 @@ namespace carom {
 
 namespace {
 
-constexpr size_t kLonely = 10, kCrowded = 30;  // neighbours
+// Neighbours. A sphere with less than kLonely tries a shell twice as wide, which may have kMost;
+// one with more than kCrowded makes a narrower one when it comes to it, with more than kMob at
+// once.
+constexpr size_t kLonely = 4, kMost = 10, kCrowded = 30, kMob = 48;
 
 }  // namespace
 
@@ -53,26 +56,51 @@ Vec3 Engine::ahead(const Motion& at, double r, int widening) const {
 }
 
 // A shell around where the sphere is now, and with it its row of neighbours. A sphere that flies
-// alone gets a wider shell each time, so that an expanding cloud costs ever less.
+// alone gets a wider shell each time, so that an expanding cloud costs ever less. Into such a shell
+// others may fly, thousands of them, and each would look at its sphere ever after: it is remade.
 void Engine::make_shell(int i) {
+    renew_shell(i);
+    while (!outgrown_.empty()) {
+        const int32_t j = outgrown_.back();
+        outgrown_.pop_back();
+        if (j == i || rows_.size(j) <= kMob || !crowded(j)) continue;
+        renew_shell(j);
+        predict(j);
+    }
+}
+
+void Engine::renew_shell(int i) {
     ++work_.shells;
+    const auto shell_of = [this](int32_t j) { return shell(j); };
     const int widening = rows_.line(i).margin;
+    const size_t neighbours = rows_.size(i);
     int wish = widening;
-    if (crowded(i))
+    if (neighbours > kCrowded && widening > least_widening(i))
         --wish;
-    else if (rows_.size(i) * 4 < kLonely && widening < most_widening_)
+    else if (neighbours < kLonely && widening < most_widening_)
         ++wish;
 
-    cells_.remove(i, shell(i));
+    cells_.remove(i, shell(i), shell_of);
     const Motion at = motion(i, now_);
     for (;;) {
         place_shell(i, ahead(at, spheres_[size_t(i)].r, wish), wish);
-        cells_.search(shell(i), [this](int32_t j) { return shell(j); }, found_);
-        if (wish <= widening || found_.n <= kLonely) break;
-        wish = widening;
+        cells_.search(shell(i), shell_of, found_);
+        if (wish > widening && found_.n > kMost) {
+            wish = widening;
+        } else if (wish < widening && found_.n > kCrowded && wish > least_widening(i) &&
+                   rows_.line(i).margin == wish) {
+            --wish;
+        } else {
+            break;
+        }
     }
-    cells_.add(i, shell(i));
+    cells_.add(i, shell(i), shell_of);
     exchange(i);
+}
+
+void Engine::join(int32_t j, int i) {
+    rows_.add(j, i);
+    if (rows_.line(j).n < 0 && rows_.size(j) > kMob) outgrown_.push_back(j);
 }
 
 // The row becomes what was found. Rows are symmetric: whoever joins or leaves this row gains or
@@ -89,7 +117,7 @@ void Engine::exchange(int i) {
             fetch(&rows_.line(now[size_t(std::countr_zero(left))]));
         for (; d.gone != 0; d.gone &= d.gone - 1) rows_.remove(old.id[std::countr_zero(d.gone)], i);
         for (; d.fresh != 0; d.fresh &= d.fresh - 1)
-            rows_.add(now[size_t(std::countr_zero(d.fresh))], i);
+            join(now[size_t(std::countr_zero(d.fresh))], i);
     } else {
         std::vector<int32_t> before, after(now.begin(), now.end());
         for (const Row& row : rows_.of(i)) before.insert(before.end(), row.id, row.id + row.n);
@@ -98,9 +126,18 @@ void Engine::exchange(int i) {
         for (const int32_t j : before)
             if (!std::binary_search(after.begin(), after.end(), j)) rows_.remove(j, i);
         for (const int32_t j : after)
-            if (!std::binary_search(before.begin(), before.end(), j)) rows_.add(j, i);
+            if (!std::binary_search(before.begin(), before.end(), j)) join(j, i);
     }
     rows_.assign(i, now);
+}
+
+// An epoch in which little happens may go on for ever. What is done for all spheres, and what suits
+// the times that were usual once, is then done anew after ever longer times.
+void Engine::look_again() {
+    if (epoch_events_ - focused_events_ < int64_t(size()) / 4) span_ = std::min(2 * span_, 0x1p900);
+    focused_events_ = epoch_events_;
+    focus();
+    calendar_.reset(pending(), now_);
 }
 
 // Chooses the units of glances for this epoch, and looks at every sphere anew.
@@ -109,10 +146,12 @@ void Engine::exchange(int i) {
 // a cell; the steps of positions and times err by less, except for a sphere too fast, too large,
 // too small or in too wide a shell: those are marked to be solved exactly.
 void Engine::focus() {
+    focused_until_ = now_ + 1.5 * span_;
     if (!glancing_) return;
+    glances_.resize(size());
     // Beyond the caches: measured where looking ahead begins to pay.
     far_ = size() > (gridded_ ? 64000 : 20000);
-    const double epoch = clock_.epoch;
+    const double epoch = span_;
     double energy = 0;
     for (const Sphere& s : spheres_) energy += norm2(s.v);
     const double speed = std::sqrt(energy / double(size()));
@@ -139,7 +178,6 @@ void Engine::focus() {
     lens_.farthest = 0x1p30 * cell_;
     lens_.scale = lens_.time / length;
     lens_.start = now_;
-    focused_until_ = now_ + 1.5 * epoch;
     for (size_t i = 0; i < size(); ++i) {
         const double r = spheres_[i].r;
         const bool clear = r < 128 * cell_ && r > cell_ / 1024;

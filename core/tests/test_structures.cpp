@@ -87,28 +87,29 @@ void search_everything(const Vec3& period, double spread) {
         std::mt19937_64 same(3);
         std::uniform_real_distribution<double> u(-0.5, 0.5);
         Cells cells;
-        cells.reset(1.0, period, Vec3{1, 1, 1} * spread, 300, kernels(level));
+        cells.reset(1.0, period, Vec3{1, 1, 1} * spread, {kNever, kNever, kNever}, 300,
+                    kernels(level));
         std::vector<Shell> shells(300);
+        const auto shell_of = [&](int32_t j) { return shells[size_t(j)]; };
         const auto place = [&](Shell& s, double reach) {
             s = {{u(same) * spread, u(same) * spread, u(same) * spread}, reach};
         };
         for (size_t i = 0; i < shells.size(); ++i) {
             place(shells[i], i % 50 == 0 ? 3.0 : 0.1 + 0.4 * std::abs(u(same)));
-            cells.add(int(i), shells[i]);
+            cells.add(int(i), shells[i], shell_of);
         }
         for (size_t i = 0; i < shells.size(); i += 2) {
-            cells.remove(int(i), shells[i]);
+            cells.remove(int(i), shells[i], shell_of);
             place(shells[i], shells[i].reach);
-            cells.add(int(i), shells[i]);
+            cells.add(int(i), shells[i], shell_of);
         }
-        const auto shell_of = [&](int32_t j) { return shells[size_t(j)]; };
         std::vector<std::vector<int32_t>> answers;
         size_t extra = 0, real = 0;
         for (size_t i = 0; i < shells.size(); ++i) {
             Found found;
-            cells.remove(int(i), shells[i]);
+            cells.remove(int(i), shells[i], shell_of);
             cells.search(shells[i], shell_of, found);
-            cells.add(int(i), shells[i]);
+            cells.add(int(i), shells[i], shell_of);
             std::vector<int32_t> ids(found.ids().begin(), found.ids().end());
             std::sort(ids.begin(), ids.end());
             CHECK(std::adjacent_find(ids.begin(), ids.end()) == ids.end());

@@ -98,6 +98,20 @@ class Resumable(Protocol):
         """Continue from a checkpoint of an engine built from the same state and world."""
 
 
+def _unchanging(state: State) -> State:
+    """What of the state no engine changes, read-only; the other arrays are empty."""
+    kept = State.empty()
+    for name in UNCHANGING:
+        array = getattr(state, name)
+        if len(array) and (array == array[0]).all():  # one number for all
+            setattr(kept, name, np.broadcast_to(array[:1].copy(), array.shape))
+        else:
+            setattr(kept, name, array.copy())
+            getattr(kept, name).flags.writeable = False
+    kept.collisions, kept.wall_collisions = state.collisions, state.wall_collisions
+    return kept
+
+
 class FastEngine:
     """The engine in C++: calendar queue, neighbour lists, exact contact times.
 
@@ -123,9 +137,7 @@ class FastEngine:
         grid: int = -1,
         profile: bool = False,
     ) -> None:
-        self._start = state.copy()
-        for name in UNCHANGING:
-            getattr(self._start, name).flags.writeable = False
+        self._start = _unchanging(state)
         self._lock = threading.Lock()  # the core runs without the GIL
         walls = np.column_stack(
             [
