@@ -1,6 +1,7 @@
 // Do the engine's structures agree with one another? Slow, for tests.
 #include <stdexcept>
 
+#include "arithmetic.hpp"
 #include "engine.hpp"
 
 namespace carom {
@@ -14,6 +15,7 @@ void demand(bool ok, const char* what) {
 }  // namespace
 
 void Engine::check() const {
+    const PlainArithmetic plain;
     for (size_t i = 0; i < size(); ++i) {
         const Event& e = events_[i];
         demand(e.t >= now_ || e.partner == kNone, "an event lies in the past");
