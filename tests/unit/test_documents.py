@@ -99,9 +99,8 @@ def test_the_architecture_lists_every_file_and_no_other() -> None:
     package = rest.split("\ntests/")[0]
 
     def first_words(block: str, suffixes: str) -> set[str]:
-        lines = [
-            re.split(" {2,}", line.strip())[0] for line in block.splitlines() if line[:2] == "  "
-        ]
+        entries = [line.strip() for line in block.splitlines() if re.match(r" {2,4}\S", line)]
+        lines = [re.split(" {2,}", entry)[0] for entry in entries]
         return set(re.findall(rf"[\w]+\.(?:{suffixes})\b", " ".join(lines)))
 
     files = {p for p in (ROOT / "core").rglob("*.[hc]pp") if p.parent.name != "tests"}
