@@ -49,9 +49,9 @@ DEEPEST = 1e-12
 #: of one sphere follow one another in bursts.
 SCATTER = 1.2
 #: Relative: of Carnahan's and Starling's formula, and of a fluid that may remember its lattice.
-THEORY, YOUNG = 0.004, 0.02
-#: Collisions per sphere after which it does not.
-OLD = 10
+THEORY, YOUNG = 0.004, 0.04
+#: Collisions per sphere after which it does not; a fluid this dense takes ten times as many.
+OLD, DENSE = 10, 0.45
 #: Spheres below which the fluid is not the theory's, which is that of infinitely many.
 MANY = 1_000
 #: Variance over mean of the number of spheres in cells of `CELL` diameters above which they are
@@ -141,7 +141,8 @@ def rate(case: Case, state: State, before: int, collisions: int, time: float) ->
     expected = enskog(case.packing_fraction, 2 * kinetic / (3 * case.n - 3))
     measured = 2 * collisions / case.n / time
     error = SCATTER / math.sqrt(collisions)
-    theory = THEORY if 2 * before >= OLD * case.n else YOUNG
+    forgets = OLD if case.packing_fraction < DENSE else 10 * OLD
+    theory = THEORY if 2 * before >= forgets * case.n else YOUNG
     allowed = theory + 4 * error
     if not abs(measured / expected - 1) < allowed:
         msg = (
