@@ -241,10 +241,10 @@ def test_pause_single_frame_play_and_keys(show):
 
 def test_restart_runs_setup_again(show):
     shown = show(HEAD.replace("size(", "print('set up'); size(") + "    sphere(frame_count())\n")
-    shown.wait("carom.sheet.frame > 20")
+    shown.wait("carom.sheet.frame > 150")
     shown.button("Restart").click()
     shown.wait("carom.sheet.epoch === 1 && carom.sheet.frame > 0")
-    assert shown.js("carom.sheet.frame") < 20
+    assert shown.js("carom.sheet.frame") < 120  # a slow machine looks late
     assert shown.page.locator("#printed").inner_text().strip() == "set up"
     shown.page.keyboard.press("r")
     shown.wait("carom.sheet.epoch === 2")
