@@ -109,6 +109,7 @@ class Runner:
             if op == "restart":
                 self._epoch += 1
                 self._playing, self._steps = True, 0
+                self._due = 0.0  # a new epoch never shows a frame of the old one
                 self._fail("")
                 self._try(self._program.start)
             elif op == "step":
