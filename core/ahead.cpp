@@ -1,7 +1,6 @@
 // Asking memory in time: when a bucket of events is taken in hand, for what the events of the next
-// buckets will touch, each stage for a bucket nearer. Without it every event of a large system
-// waits a dozen times for memory (256 000 spheres: 1.3 to 1.5 times faster; a few thousand: no
-// gain).
+// buckets will touch, each stage for a bucket nearer: 1.2 to 1.5 times faster at 256 000 spheres,
+// slower at a few thousand.
 #include "engine.hpp"
 
 namespace carom {
@@ -39,7 +38,7 @@ void Engine::ask_for_rows(int i, const Event& e) const {
 
 void Engine::ask_for_row_neighbours(int i, const Event& e) const {
     const auto neighbours = [this](int32_t k) {
-        // Once more: a processor may drop a fourth of what it is asked for.
+        // Once more: a fourth of these were found missing when they were needed.
         fetch(&spheres_[size_t(k)]);
         fetch(&bodies_[size_t(k)]);
         for (const Row& part : rows_.of(k))

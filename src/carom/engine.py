@@ -148,31 +148,34 @@ class FastEngine:
                 world.walls["restitution"],
             ]
         )
-        self._core = _Core(
-            position=np.ascontiguousarray(state.position, np.float64),
-            velocity=np.ascontiguousarray(state.velocity, np.float64),
-            mass=np.ascontiguousarray(state.mass, np.float64),
-            radius=np.ascontiguousarray(state.radius, np.float64),
-            fixed=np.ascontiguousarray(state.fixed, np.bool_),
-            resting=np.ascontiguousarray(state.resting, np.bool_),
-            image=np.ascontiguousarray(state.image, np.int32),
-            count=np.ascontiguousarray(state.collision_count, np.uint32),
-            time=state.time,
-            period=np.ascontiguousarray(world.period, np.float64),
-            walls=np.ascontiguousarray(walls, np.float64),
-            restitution=world.restitution,
-            contact_time=world.contact_time,
-            gravity=np.ascontiguousarray(world.gravity, np.float64),
-            collide=world.collide,
-            margin=margin,
-            cell=cell,
-            log=log,
-            slice=slice_seconds,
-            simd=simd,
-            sort=sort,
-            grid=grid,
-            profile=profile,
-        )
+        try:
+            self._core = _Core(
+                position=np.ascontiguousarray(state.position, np.float64),
+                velocity=np.ascontiguousarray(state.velocity, np.float64),
+                mass=np.ascontiguousarray(state.mass, np.float64),
+                radius=np.ascontiguousarray(state.radius, np.float64),
+                fixed=np.ascontiguousarray(state.fixed, np.bool_),
+                resting=np.ascontiguousarray(state.resting, np.bool_),
+                image=np.ascontiguousarray(state.image, np.int32),
+                count=np.ascontiguousarray(state.collision_count, np.uint32),
+                time=state.time,
+                period=np.ascontiguousarray(world.period, np.float64),
+                walls=np.ascontiguousarray(walls, np.float64),
+                restitution=world.restitution,
+                contact_time=world.contact_time,
+                gravity=np.ascontiguousarray(world.gravity, np.float64),
+                collide=world.collide,
+                margin=margin,
+                cell=cell,
+                log=log,
+                slice=slice_seconds,
+                simd=simd,
+                sort=sort,
+                grid=grid,
+                profile=profile,
+            )
+        except ValueError as error:  # such as an instruction set that this machine does not have
+            raise InputError(str(error)) from None
 
     @property
     def time(self) -> float:

@@ -223,7 +223,10 @@ def first_overlap(
     (i, j, depth) or None
         Depth is sigma - r.
     """
-    return deepest_overlap(position, radius, fixed, period)
+    try:
+        return deepest_overlap(position, radius, fixed, period)
+    except ValueError as error:  # CAROM_SIMD names no instruction set of this machine
+        raise InputError(str(error)) from None
 
 
 def room(wall: NDArray[Any], position: Floats, radius: Floats) -> Floats:

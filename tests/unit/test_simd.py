@@ -13,6 +13,7 @@ import pytest
 
 from carom import _core
 from carom.engine import FastEngine
+from carom.errors import InputError
 from carom.world import World
 
 from .worlds import bits, box, digest, every_kind, gas, run
@@ -103,8 +104,23 @@ def test_the_best_instruction_set_is_taken_unless_another_is_asked_for():
 
 
 def test_an_instruction_set_that_is_not_there_is_refused():
-    with pytest.raises(ValueError, match=r"abacus.*baseline"):
+    with pytest.raises(InputError, match=r"abacus.*baseline"):
         FastEngine(gas(2), World(), simd="abacus")
+
+
+def test_a_wrong_choice_is_one_sentence_on_the_command_line():
+    done = subprocess.run(
+        [sys.executable, "-m", "carom", "run", "two-balls", "--collisions", "1"],
+        env=os.environ | {"CAROM_SIMD": "abacus"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert done.stderr == (
+        "carom: this machine cannot run the instruction set 'abacus': "
+        f"choose one of {', '.join(LEVELS)}\n"
+    )
 
 
 def rounding_modes():
