@@ -30,6 +30,9 @@
 
 namespace carom {
 
+// So many spheres are found in the caches: beyond, looking ahead pays (measured on both sides).
+constexpr size_t kListsInCache = 30000, kGridInCache = 64000;
+
 constexpr int kEndless = 60;  // doublings: such a shell is wider than positions are resolved
 
 // How one sphere moves as seen from another, from time `from` on.
@@ -133,8 +136,11 @@ private:
     void find_event(int i);
     void refresh(int i);
     Look look(int i) const;
-    void fetch_partner(const Look& look) const;
     void choose(int i, const Look& look, double& t, int32_t& partner) const;
+    void choose_exactly(int i, const Look& look, double& t, int32_t& partner) const;
+    void solve(int i);
+    void make_sure(int i);
+    void open_bucket();
     void decide(int i, const Look& look);
     double free_contact(int i, int32_t j) const;
     void settle_on(int i, double t, int32_t partner, double leaves, int axis);
@@ -157,22 +163,24 @@ private:
     Vec3 ahead(const Motion& at, double r, int widening) const;
     void make_shell(int i);
     void renew_shell(int i);
-    void join(int32_t j, int i);
     bool crowded(int i) const;
     int least_widening(int i) const { return spheres_[size_t(i)].r > giant_ ? 0 : least_widening_; }
     double margin(int widening) const;
     Shell shell(int i) const;
     void place_shell(int i, const Vec3& centre, int widening);
     void exchange(int i);
+    void tell_neighbours(int i);
     void focus();
     void look_again();
 
     // ahead.cpp
     void look_ahead() const;
+    void ask_for_pair(int i, int32_t j) const;
     void ask_for_rows(int i, const Event& e) const;
     void ask_for_row_neighbours(int i, const Event& e) const;
     GridBlock new_cells(int i, const Event& e) const;
     void ask_for_cells(int i, const Event& e) const;
+    void ask_for_partners_cells(const Event& e) const;
     void ask_for_cell_neighbours(int i, const Event& e) const;
 
     // execute.cpp
@@ -220,6 +228,7 @@ private:
     Lens lens_;
     double span_ = 1;           // for such a time: an epoch, longer where little happens
     double focused_until_ = 0;  // glances are too old after that
+    double doubt_ = 0;          // a bound is rarely this much earlier than what it bounds
     int64_t focused_events_ = 0;
     Array<Glance> glances_;
 
@@ -240,7 +249,8 @@ private:
     Cells cells_;
     Calendar calendar_;
     Found found_;
-    std::vector<int32_t> outgrown_;  // rows that have become too long
+    std::vector<int32_t> left_, joined_;  // a row that has changed
+    std::vector<int32_t> outgrown_;       // rows that have become too long
 
     Work work_;
     Profile profile_;
