@@ -87,8 +87,12 @@ def test_gases_large_enough_for_a_grid(recipe, roominess, options):
     assert told(scene, options | {"grid": 1}, 1000) == told(scene, {"grid": 0}, 1000)
 
 
-@pytest.mark.parametrize(("option", "did"), [("grid", "shells"), ("ahead", "exact")])
-def test_something_else_was_done(option, did):
+@pytest.mark.parametrize(
+    ("options", "did"),
+    [([{"grid": 0}, {"grid": 1}], "predictions"), ([{"ahead": 0}, {"ahead": 1}], "exact")],
+    ids=["grid", "ahead"],
+)
+def test_something_else_was_done(options, did):
     scene = Recipe(
         seed=1,
         spheres=250,
@@ -105,7 +109,7 @@ def test_something_else_was_done(option, did):
         size_ratio=1.0,
         collide=True,
     ).build()
-    engines = [FastEngine(*scene, **{option: value}) for value in (0, 1)]
+    engines = [FastEngine(*scene, **({"grid": 1} | option)) for option in options]
     for fast in engines:
         run(fast, 50.0, 500)
     first, second = (fast.work() for fast in engines)
