@@ -89,7 +89,7 @@ def test_gases_large_enough_for_a_grid(recipe, roominess, options):
 
 @pytest.mark.parametrize(
     ("options", "did"),
-    [([{"grid": 0}, {"grid": 1}], "predictions"), ([{"ahead": 0}, {"ahead": 1}], "exact")],
+    [([{"grid": 0}, {"grid": 1}], "predictions"), ([{"ahead": 0}, {"ahead": 1}], "stale")],
     ids=["grid", "ahead"],
 )
 def test_something_else_was_done(options, did):

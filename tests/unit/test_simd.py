@@ -1,4 +1,4 @@
-"""Instruction sets, grid, looking ahead, sorting: no bit depends on what machine and density choose."""
+"""Instruction sets, grid, looking ahead, sorting: no bit depends on what the engine chooses."""
 
 import ctypes
 import ctypes.util
