@@ -142,6 +142,7 @@ private:
     void make_sure(int i);
     void open_bucket();
     void decide(int i, const Look& look);
+    double contact(int i, int32_t j) const;
     double free_contact(int i, int32_t j) const;
     void settle_on(int i, double t, int32_t partner, double leaves, int axis);
     template <class Visit>
@@ -224,7 +225,7 @@ private:
     Array<Watch> watches_;      // inelastic runs only
 
     const Kernels* kernels_;
-    bool glancing_ = false;  // one image, no gravity: pairs are looked through at a glance
+    bool glancing_ = false;  // one image: pairs are looked through at a glance
     Lens lens_;
     double span_ = 1;           // for such a time: an epoch, longer where little happens
     double focused_until_ = 0;  // glances are too old after that
@@ -302,14 +303,19 @@ inline Shell Engine::shell(int i) const {
 
 // What changes of a glance: all but the radius, which `focus` gives.
 inline void Engine::refresh(int i) {
-    const Sphere& s = spheres_[size_t(i)];
-    const Vec3 here = motion(i, now_).x;
+    auto [here, v] = motion(i, now_);
+    if (gravity_) {  // seen by one who falls along, all that fall fly straight on
+        const double fall = now_ - lens_.start;
+        here -= world_.gravity * (0.5 * fall * fall);
+        v -= world_.gravity * fall;
+    }
     const double scale = lens_.scale;
     Glance& g = glances_[size_t(i)];
-    const float vx = float(s.v.x * scale), vy = float(s.v.y * scale), vz = float(s.v.z * scale);
+    const float vx = float(v.x * scale), vy = float(v.y * scale), vz = float(v.z * scale);
     const float v2 = vx * vx + vy * vy + vz * vz;
     bool clear = v2 < lens_.fastest2 && g.r > 0;
-    if (v2 < 0x1p-60f) clear = clear && s.v.x == 0 && s.v.y == 0 && s.v.z == 0;
+    if (v2 < 0x1p-60f) clear = clear && v.x == 0 && v.y == 0 && v.z == 0;
+    if (gravity_) clear = clear && falls_[size_t(i)];
     if (!gridded_) {
         const double far = std::abs(here.x) + std::abs(here.y) + std::abs(here.z);
         clear = clear && far < lens_.farthest && rows_.line(i).margin <= 4;

@@ -188,7 +188,7 @@ void Engine::look_through(int i, const GridBlock& block, Look& out) const {
                 row, now_, lens_.time);
 }
 
-// First half of a prediction without gravity: who of the neighbours may be met first, at a glance.
+// First half of a prediction: who of the neighbours may be met first, at a glance.
 inline Engine::Look Engine::look(int i) const {
     const Motion at = motion(i, now_);
     Look out{kNever, kNone, kNever, kNever};
@@ -252,7 +252,7 @@ void Engine::choose_exactly(int i, const Look& look, double& t, int32_t& partner
     const double leaves = gridded_ ? kNever : look.leaves;
     double limit = std::min(t, leaves);
     if (look.first < kNever && look.first <= limit && look.partner != i) {
-        const double met = free_contact(i, look.partner);
+        const double met = contact(i, look.partner);
         if (met < t ||
             (met == t && t < kNever && precedes(i, {met, look.partner, {}}, {t, partner, {}}))) {
             t = met;
@@ -272,7 +272,7 @@ void Engine::choose_exactly(int i, const Look& look, double& t, int32_t& partner
 void Engine::solve(int i) {
     Event& e = events_[size_t(i)];
     const int32_t j = guessed(e.partner);
-    const double bound = e.t, met = free_contact(i, j);
+    const double bound = e.t, met = contact(i, j);
     Look seen{kNever, kNone, kNever, kNever};
     if (met >= bound && met <= bound + doubt_) {
         if (gridded_) look_at_exit(motion(i, now_), Grid::unpack(e.cell), seen);
@@ -329,6 +329,13 @@ void Engine::change_cell(int i) {
     profile_.lap(Profile::predict);
     calendar_.schedule(i, pending());
     profile_.lap(Profile::queue);
+}
+
+inline double Engine::contact(int i, int32_t j) const {
+    if (!gravity_) return free_contact(i, j);
+    Next met;
+    consider(i, j, met);
+    return met.t;
 }
 
 // When two in free flight meet in the one image that they can: what `consider` finds for them.

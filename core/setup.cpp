@@ -77,8 +77,8 @@ void Engine::choose_shells(const Tuning& tuning) {
     giant_ = 2 * r;
     least_widening_ = 0;
     while (margin(least_widening_ - 1) >= 0.1 * r) --least_widening_;
-    glancing_ = !gravity_ && !several_images_;
-    plain_ = glancing_ && world_.restitution == 1 && last_touch_.empty();
+    glancing_ = !several_images_;
+    plain_ = glancing_ && !gravity_ && world_.restitution == 1 && last_touch_.empty();
     if (several_images_) images_.resize(size());
 }
 

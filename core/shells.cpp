@@ -177,9 +177,15 @@ void Engine::focus() {
     }
     lens_.ticks_per_time = 0x1p30 / epoch;
     lens_.tick = float(0x1p-30 * epoch / lens_.time);
-    lens_.blur = float(0x1p-15 * cell_ / length + 16 * widest);
+    lens_.blur = float((gravity_ ? 0x1p-13 : 0x1p-15) * cell_ / length + 16 * widest);
     lens_.still = lens_.blur * lens_.blur;
-    const float fastest = lens_.blur / (16 * lens_.tick);
+    float fastest = lens_.blur / (16 * lens_.tick);
+    if (gravity_) {
+        // So long at most a sphere that goes up and comes down stays in its shell, and what is
+        // rounded off its velocity must not become a distance.
+        const double stays = 2 * std::sqrt(32 * cell_ / norm(world_.gravity)) / lens_.time;
+        fastest = std::min(fastest, float(0x1p21 * lens_.blur / stays));
+    }
     lens_.fastest2 = fastest * fastest;
     lens_.farthest = 0x1p30 * cell_;
     lens_.scale = lens_.time / length;
