@@ -227,6 +227,7 @@ void Engine::predict_all() {
     span_ = clock_.epoch;
     focused_events_ = epoch_events_;
     focus();
+    doubt_ = 0x1p-10 * lens_.time;  // not changed while any guess is left
     for (size_t i = 0; i < size(); ++i) find_event(int(i));
     calendar_.reset(pending(), now_);
 }

@@ -189,7 +189,6 @@ void Engine::focus() {
     lens_.fastest2 = fastest * fastest;
     lens_.farthest = 0x1p30 * cell_;
     lens_.scale = lens_.time / length;
-    doubt_ = 0x1p-10 * lens_.time;
     lens_.start = now_;
     for (size_t i = 0; i < size(); ++i) {
         const double r = spheres_[i].r;
