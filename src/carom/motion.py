@@ -13,13 +13,17 @@ from carom import edits, fit, mechanics
 from carom.engine import NO_LIMIT, Engine, Resumable, Stop
 from carom.errors import InputError
 from carom.interrupts import HeldInterrupt
+from carom.observe.feed import Feed
 from carom.rules import Smooth
 from carom.scene import Scene, Spheres
 from carom.state import EVENT, State
 from carom.walls import Wall, wall_names, world
+from carom.watch import Watch
 from carom.world import World
 
 MakeEngine = Callable[[State, World], Engine]
+#: The same; True asks for an engine that keeps event records.
+MakeLogging = Callable[[State, World, bool], Engine]
 Serials = NDArray[np.int64]
 
 
@@ -127,7 +131,7 @@ class Motion:
     state : State
     surroundings : Surroundings
     make_engine : callable
-        ``(state, world) -> Engine``.
+        ``(state, world, log) -> Engine``; `log` says whether event records are wanted.
     keep_events : int
         How many of the newest events of a run `events` holds.
     strict : bool
@@ -139,13 +143,14 @@ class Motion:
         self,
         state: State,
         surroundings: Surroundings,
-        make_engine: MakeEngine,
+        make_engine: MakeLogging,
         keep_events: int,
         strict: bool = True,
     ) -> None:
         self._make_engine = make_engine
         self._strict = strict
         self._kept = EventKeeper(keep_events)
+        self._logs = keep_events > 0
         self._born = 0
         self.begin(state, surroundings)
 
@@ -347,7 +352,7 @@ class Motion:
         if saved.engine is not None:
             same = self._built is saved.built and self.world is saved.world
             engine = self._engine if same else None
-            engine = engine or self._make_engine(saved.built, saved.world)
+            engine = engine or self._make_engine(saved.built, saved.world, self._logs)
             assert isinstance(engine, Resumable)
             engine.restore(saved.engine)
         self._engine, self._built = engine, saved.built
@@ -363,24 +368,61 @@ class Motion:
         collisions: int = NO_LIMIT,
         events: int = NO_LIMIT,
         progress: Callable[[], object] | None = None,
+        feed: Feed | None = None,
     ) -> Stop:
-        """Run to a time or for a count; Ctrl-C and `progress` get a turn between slices."""
+        """Run to a time or for a count; Ctrl-C and `progress` get a turn between slices.
+
+        `feed` gets all events, and the moments it asks for: the engine stops exactly there.
+        """
         self._kept.clear()
         self._start = self.start
+        engine = self._ready(log=feed is not None and feed.takes_events)
+        pairs, walls = engine.collisions, engine.wall_collisions
+        watch = Watch(engine)
+        stop = Stop.SLICE
+        try:
+            with HeldInterrupt() as interrupt:
+                while stop is Stop.SLICE:
+                    hits = engine.collisions - pairs
+                    total = hits + engine.wall_collisions - walls
+                    due = min(until, math.inf if feed is None else feed.due)
+                    stop = Stop(engine.advance(due, collisions - hits, events - total))
+                    self._snapshot = None
+                    records = engine.take_events()
+                    self._kept.append(records)
+                    if feed is not None:
+                        feed.events(records)
+                        feed.moment(self)
+                        if stop is Stop.TIME and due < until:
+                            stop = Stop.SLICE
+                            if until == math.inf and watch.nothing_left(self._probe):
+                                stop = Stop.IDLE
+                    if progress is not None:
+                        progress()
+                    interrupt.deliver()
+        except KeyboardInterrupt:
+            if feed is not None:
+                feed.end(self)
+            raise
+        if feed is not None:
+            feed.end(self)
+        return stop
+
+    def _ready(self, log: bool) -> Engine:
+        """The engine, built if there is none, and keeping records if they are wanted."""
         if self._engine is None:
             self._built = self.state
-            self._engine = self._make_engine(self._built, self.world)
-        engine = self._engine
-        pairs, walls = engine.collisions, engine.wall_collisions
-        stop = Stop.SLICE
-        with HeldInterrupt() as interrupt:
-            while stop is Stop.SLICE:
-                hits = engine.collisions - pairs
-                total = hits + engine.wall_collisions - walls
-                stop = Stop(engine.advance(until, collisions - hits, events - total))
-                self._snapshot = None
-                self._kept.append(engine.take_events())
-                if progress is not None:
-                    progress()
-                interrupt.deliver()
-        return stop
+            self._logs = log or self._kept.limit > 0
+            self._engine = self._make_engine(self._built, self.world, self._logs)
+        elif log and not self._logs:
+            self._logs = True
+            if isinstance(self._engine, Resumable):  # others keep records always
+                logging = self._make_engine(self._built, self.world, True)
+                assert isinstance(logging, Resumable)
+                logging.restore(self._engine.checkpoint())
+                self._engine = logging
+        return self._engine
+
+    def _probe(self) -> Engine:
+        """An engine that goes on from here without any trace."""
+        return self._make_engine(self.state, self.world, False)

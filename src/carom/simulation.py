@@ -108,7 +108,7 @@ class Simulation(Running):
 
     def _moved(self, state: State, around: Surroundings, keep_events: int) -> Motion:
         """What carries spheres on by this simulation's method."""
-        make = engine_maker(self._method, self._tick, log=keep_events > 0)
+        make = engine_maker(self._method, self._tick)
         return Motion(state, around, make, keep_events, strict=self._method != "tick")
 
     @property
