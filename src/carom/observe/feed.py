@@ -37,6 +37,8 @@ class Cutter:
 
     def flush(self, end: float) -> None:
         """Hand on what is left, up to a time."""
+        if len(self._rest):  # the clock and the record of one event may round differently
+            end = max(end, float(self._rest["time"][-1]))
         self._hand_on(self._rest, end)
         self._rest = np.zeros(0, EVENT)
 
