@@ -45,7 +45,7 @@ class OfEvents(Observable):
 
     def begin(self, moment: Moment) -> None:
         """Start a series."""
-        self._rates = Rates(1)
+        self._rates = Rates()
 
     def events(self, batch: Batch) -> None:
         """Ask the function."""
@@ -56,14 +56,14 @@ class OfEvents(Observable):
                 "return one number for each"
             )
             raise InputError(msg)
-        self._rates.add(batch, values.astype(np.float64)[:, None])
+        self._rates.add(batch, values.astype(np.float64))
 
     def result(self) -> Estimate:
         """Sum over the duration."""
         if self.duration == 0:
             msg = f"{self.name} is for each unit of time, and no time has passed; run longer"
             raise InputError(msg)
-        return self._rates.rate(0)
+        return self._rates.rate()
 
 
 def observable(function: Callable[[Any], Any]) -> Callable[..., Observable]:

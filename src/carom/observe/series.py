@@ -1,6 +1,7 @@
 """Sums over blocks of a run: for error bars, in memory that does not grow with the run."""
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,44 +84,69 @@ class Rates:
     Parameters
     ----------
     columns : int
-        Of numbers that each event brings.
+        Into how many sums the events are sorted.
     """
 
-    def __init__(self, columns: int) -> None:
+    def __init__(self, columns: int = 1) -> None:
+        self._columns = columns
         self._series = Series(1 + columns)  # the first is time
-        self._rest = np.zeros((0, 1 + columns))
+        self._rest = np.zeros((3, 0))  # time since the event before, value, column
         self._silence = 0.0  # since the last event
 
-    def add(self, batch: Batch, values: NDArray[np.float64]) -> None:
-        """Take what the events of a batch bring, (n, columns) float64."""
+    def add(self, batch: Batch, value: Floats, column: NDArray[Any] | None = None) -> None:
+        """Take what the events of a batch bring.
+
+        Parameters
+        ----------
+        batch : Batch
+        value : (n,) array
+            What each adds.
+        column : (n,) int array, optional
+            To which sum; one below 0 is left out. All to the first if left out.
+        """
         n = len(batch)
         if n == 0:
             self._silence += batch.end - batch.start
             return
-        rows = np.empty((len(self._rest) + n, 1 + values.shape[1]))
-        rows[: len(self._rest)] = self._rest
-        new = rows[len(self._rest) :]
-        new[1:, 0] = np.diff(batch.time)
-        new[0, 0] = batch.time[0] - batch.start + self._silence
-        new[:, 1:] = values
+        left = self._rest.shape[1]
+        events = np.empty((3, left + n))
+        events[:, :left] = self._rest
+        time, values, columns = events[:, left:]
+        time[1:] = np.diff(batch.time)
+        time[0] = batch.time[0] - batch.start + self._silence
+        values[:] = value
+        columns[:] = 0 if column is None else column
         self._silence = batch.end - float(batch.time[-1])
-        whole = len(rows) // EVENTS
-        blocks = rows[: whole * EVENTS].reshape(whole, EVENTS, rows.shape[1])
-        self._series.add(np.einsum("ijk->ik", blocks))  # three times as fast as sum(axis=1)
-        self._rest = rows[whole * EVENTS :].copy()
+        blocks = events.shape[1] // EVENTS
+        self._series.add(self._summed(events[:, : blocks * EVENTS], blocks))
+        self._rest = events[:, blocks * EVENTS :].copy()
+
+    def _summed(self, events: Floats, blocks: int) -> Floats:
+        """Sums over equal blocks of events, (blocks, 1 + columns)."""
+        sums = np.empty((blocks, 1 + self._columns))
+        time, value, column = events
+        # This way it takes a third of the time of sum(axis=1).
+        sums[:, 0] = np.einsum("ij->i", time.reshape(blocks, -1 if blocks else 1))
+        if self._columns == 1 and not column.any():
+            sums[:, 1] = np.einsum("ij->i", value.reshape(blocks, -1 if blocks else 1))
+            return sums
+        block = np.repeat(np.arange(blocks), time.size // max(blocks, 1))
+        into = column.astype(np.int64)
+        counted = into >= 0
+        place = (block * self._columns + into)[counted]
+        found = np.bincount(place, value[counted], blocks * self._columns)
+        sums[:, 1:] = found.reshape(blocks, self._columns)
+        return sums
 
     @property
     def total(self) -> Floats:
         """(1 + columns,) float64: the time, and the sum of each column."""
-        result: Floats = self._series.total + self._rest.sum(axis=0)
+        result: Floats = self._series.total.copy()
+        if self._rest.shape[1]:
+            result += self._summed(self._rest, 1)[0]
         result[0] += self._silence
         return result
 
-    @property
-    def rows(self) -> Floats:
-        """(n, 1 + columns) float64: time and sums of complete blocks."""
-        return self._series.rows
-
-    def rate(self, column: int) -> Estimate:
+    def rate(self, column: int = 0) -> Estimate:
         """Sum of a column over the time."""
         return self._series.ratio(1 + column, 0, self.total)
