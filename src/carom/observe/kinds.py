@@ -88,7 +88,7 @@ def mean_free_time(state: State, world: World) -> float:
     return mechanics.crossing_time(state, world)
 
 
-def is_cubic_fluid(world: World) -> bool:
+def is_periodic(world: World) -> bool:
     """Whether all axes are periodic and nothing is in the way."""
     return bool((world.period > 0).all()) and len(world.walls) == 0
 
@@ -102,3 +102,62 @@ def conserves_energy(world: World) -> bool:
 def labels(kinds: Kinds) -> NDArray[np.str_]:
     """A word for each kind."""
     return np.array([f"r={r:.4g} m={m:.4g}" for r, m in zip(kinds.radius, kinds.mass, strict=True)])
+
+
+def refuse_losses(world: World, name: str) -> None:
+    """Refuse a world in which the temperature changes by itself.
+
+    Raises
+    ------
+    InputError
+        Where a rule takes energy, or gravity gives it.
+    """
+    if not conserves_energy(world):
+        msg = (
+            f"{name} is of equilibrium, where kinetic energy is conserved; "
+            "take restitution 1 everywhere and no gravity"
+        )
+        raise InputError(msg)
+
+
+def refuse_walls(world: World, name: str, instead: str) -> None:
+    """Refuse a world that is not periodic along all axes.
+
+    Raises
+    ------
+    InputError
+        With `instead` as the remedy.
+    """
+    if not is_periodic(world):
+        msg = f"{name} needs a box that is periodic along all three axes; {instead}"
+        raise InputError(msg)
+
+
+def one_kind(state: State, name: str) -> Kinds:
+    """The kinds, of which there is one.
+
+    Raises
+    ------
+    InputError
+        If there are several, or no free sphere.
+    """
+    kinds = Kinds(state)
+    if len(kinds) != 1:
+        msg = (
+            f"{name} is of spheres of one radius and mass, and here are {len(kinds)} kinds of them"
+        )
+        raise InputError(msg)
+    return kinds
+
+
+def unmoved(state: State, world: World) -> Floats:
+    """Velocities about the centre of mass along the axes where momentum is conserved, (N, 3).
+
+    Those of fixed spheres mean nothing.
+    """
+    mass = np.where(state.fixed, 0.0, state.mass)
+    drift = np.zeros(3)
+    axes = mechanics.conserved_axes(state, world)
+    drift[axes] = mechanics.momentum(state)[axes] / mass.sum()
+    result: Floats = state.velocity - drift
+    return result

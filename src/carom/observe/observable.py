@@ -129,10 +129,51 @@ class Observable:
         InputError
             If it has not begun.
         """
-        if self.begun is None or self.seen is None:
+        last = self.last()
+        assert self.begun is not None
+        return last.time - self.begun
+
+    def last(self) -> State:
+        """The spheres at the end of the last run that it saw.
+
+        Raises
+        ------
+        InputError
+            If it has not begun.
+        """
+        if self.seen is None:
             msg = f"{self.name} has measured nothing yet; give it to run(observe=...)"
             raise InputError(msg)
-        return self.seen.time - self.begun
+        return self.seen
+
+    def over_time(self) -> float:
+        """Return the duration, of which a mean over time can be taken.
+
+        Raises
+        ------
+        InputError
+            If no time has passed.
+        """
+        if self.duration == 0:
+            msg = f"{self.name} is a mean over time, and no time has passed; run longer"
+            raise InputError(msg)
+        return self.duration
+
+    def over_samples(self) -> int:
+        """Return the number of samples, of which a mean can be taken.
+
+        Raises
+        ------
+        InputError
+            If there is none.
+        """
+        if self.duration >= 0 and self.samples == 0:
+            msg = (
+                f"{self.name} has seen no sample in {self.duration:.6g}: the first is due after "
+                f"{self.next_sample - (self.begun or 0.0):.6g}; run longer"
+            )
+            raise InputError(msg)
+        return self.samples
 
     @property
     def next_sample(self) -> float:

@@ -32,9 +32,7 @@ class OfState(Sampled):
 
     def result(self) -> Estimate:
         """Mean over the samples."""
-        if self.duration >= 0 and self.samples == 0:
-            msg = f"{self.name} has seen no sample in {self.duration:.6g}; run longer"
-            raise InputError(msg)
+        self.over_samples()
         return self._series.mean(0)
 
 
@@ -60,9 +58,7 @@ class OfEvents(Observable):
 
     def result(self) -> Estimate:
         """Sum over the duration."""
-        if self.duration == 0:
-            msg = f"{self.name} is for each unit of time, and no time has passed; run longer"
-            raise InputError(msg)
+        self.over_time()
         return self._rates.rate()
 
 

@@ -7,8 +7,6 @@ from carom.observe.batch import Moment
 from carom.observe.kinds import mean_free_time
 from carom.observe.observable import Observable, Schedule, every, once
 
-APART = 5  #: mean free times between samples, so that they know little of one another
-
 
 class Sampled(Observable):
     """Base of observables with a schedule.
@@ -16,7 +14,7 @@ class Sampled(Observable):
     Parameters
     ----------
     every : float, optional
-        Simulated time between samples; five mean free times if left out.
+        Simulated time between samples; `apart` mean free times if left out.
     at : sequence of float, optional
         Times of samples instead, counted from where measuring begins.
 
@@ -26,12 +24,16 @@ class Sampled(Observable):
         If both are given, or they are no such times.
     """
 
+    #: Mean free times between samples, where nothing else is asked for.
+    apart = 2.0
+
     def __init__(self, every: float | None = None, *, at: Any = None) -> None:
         self._fixed = schedule(every, at)
 
     def begin(self, moment: Moment) -> None:
         """Choose the times."""
-        self.schedule = self._fixed or natural(moment)
+        scale = mean_free_time(moment.state, moment.world)
+        self.schedule = self._fixed or every(self.apart * scale)
 
 
 def schedule(interval: float | None, at: Any) -> Schedule | None:
@@ -42,8 +44,3 @@ def schedule(interval: float | None, at: Any) -> Schedule | None:
     if at is not None:
         return once(at)
     return None if interval is None else every(interval)
-
-
-def natural(moment: Moment) -> Schedule:
-    """One sample after each five mean free times."""
-    return every(APART * mean_free_time(moment.state, moment.world))

@@ -1,0 +1,271 @@
+"""Free flights: how long, and how far, a sphere goes from one collision to the next."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom import mechanics, theory
+from carom.errors import InputError
+from carom.observe.batch import Batch, Moment
+from carom.observe.estimate import Estimate
+from carom.observe.kinds import Kinds, conserves_energy, is_periodic
+from carom.observe.observable import Observable
+from carom.observe.series import Rates
+from carom.observe.table import Table, Theory
+from carom.state import Floats
+
+BINS, MEANS = 50, 8.0  #: the distribution goes up to eight means, in fifty bins
+ENSKOG = f"Maxwell's gas of independent flights, up to packing fraction {theory.FREEZING}"
+
+
+class FreeTime(Observable):
+    """Distribution of the time between two events of a sphere, with spheres or walls.
+
+    Flights are told apart by the records of events. Of long ones fewer begin and end within the
+    run: the density allows for that. Its errors are those of independent flights. Theory, for
+    one kind of spheres in a periodic box: a sphere of speed v meets others at the rate
+    omega(v), so ::
+
+        p(t) = < omega(v)^2 exp(-omega(v) t) > / <omega(v)>
+
+    over Maxwell's speeds, with omega(v) of a dilute gas times the contact value. Result:
+    `Table`; `mean` is an `Estimate`.
+
+    References
+    ----------
+    S. Chapman, T. G. Cowling, The Mathematical Theory of Non-Uniform Gases, 3rd ed., Cambridge
+    1970, section 5.4.
+    """
+
+    _unit = "time"
+
+    def begin(self, moment: Moment) -> None:
+        """Start the flight of every sphere."""
+        state, world = moment.state, moment.world
+        if world.gravity.any():
+            msg = f"{self.name} is of flights on straight lines; take gravity away"
+            raise InputError(msg)
+        self._free = ~state.fixed
+        if not self._free.any():
+            msg = f"{self.name} is of spheres that move, and all are fixed"
+            raise InputError(msg)
+        n = len(state)
+        self._since = np.full(n, moment.time)
+        self._met = np.zeros(n, np.bool_)  # whether its flight began with an event
+        self._counts: NDArray[np.int64] | None = None
+        self._width = math.nan
+        self._ends = Rates()  # ends of flights
+        self._gone = Rates()  # what flights that ended came to
+        self._enskog = Flights.of(moment)
+
+    def events(self, batch: Batch) -> None:
+        """End two flights at each collision, one at each hit of a wall."""
+        n = len(batch)
+        pairs = np.flatnonzero(batch.j >= 0)
+        who = np.concatenate([batch.i, batch.j[pairs]]).astype(np.int64)
+        # Sorting numbers that hold the sphere and the place is ten times as fast as argsort.
+        key = (who << 32) | np.concatenate([2 * np.arange(n), 2 * pairs + 1])
+        if not self._free.all():
+            key = key[self._free[who]]
+        key.sort()
+        sphere, place = key >> 32, key & 0xFFFFFFFF
+        event = place >> 1
+        first = np.ones(len(key), np.bool_)
+        first[1:] = sphere[1:] != sphere[:-1]
+        gone = self._lengths(batch, sphere, event, place & 1, first)
+        met = np.ones(len(key), np.bool_)
+        met[first] = self._met[sphere[first]]
+        self._met[sphere] = True
+        self._count(gone[met])
+        self._gone.add(batch, np.bincount(event, gone, n).astype(np.float64))
+        self._ends.add(batch, np.bincount(event, minlength=n).astype(np.float64))
+
+    def _lengths(
+        self,
+        batch: Batch,
+        sphere: NDArray[np.int64],
+        event: NDArray[np.int64],
+        partner: NDArray[np.int64],
+        first: NDArray[np.bool_],
+    ) -> Floats:
+        """How long the flights were that ended, in the order of spheres and then of time."""
+        end = batch.time[event]
+        start = np.empty(len(end))
+        start[1:] = end[:-1]
+        start[first] = self._since[sphere[first]]
+        self._since[sphere] = end  # of several the last one stays
+        return end - start
+
+    def _under_way(self) -> float:
+        """What the flights under way came to so far."""
+        return float((self.last().time - self._since)[self._free].sum())
+
+    def _count(self, gone: Floats) -> None:
+        if len(gone) == 0:
+            return
+        if self._counts is None:
+            self._counts = np.zeros(BINS + 1, np.int64)
+            self._width = MEANS / BINS * float(gone.mean())
+            if not self._width > 0:
+                self._width = 1.0
+        place = np.minimum(gone * (1 / self._width), BINS).astype(np.int64)
+        self._counts += np.bincount(place, minlength=BINS + 1)
+
+    def mean(self) -> Estimate:
+        """Mean over the flights: all that was flown, over the number of ends."""
+        self.over_time()
+        ends = float(self._ends.total[1])
+        if ends == 0:
+            msg = f"{self.name} has seen no collision in {self.duration:.6g}; run longer"
+            raise InputError(msg)
+        value = (float(self._gone.total[1]) + self._under_way()) / ends
+        rate = self._ends.rate()
+        return Estimate(value, value * rate.error / rate.value, rate.n_independent, rate.note)
+
+    def theory(self) -> Theory | None:
+        """The mean free time of kinetic theory, 1/omega."""
+        return None if self._enskog is None else Theory(1 / self._enskog.rate, ENSKOG)
+
+    def result(self) -> Table:
+        """The distribution so far."""
+        mean, expected = self.mean(), self.theory()
+        if self._counts is None:
+            msg = f"{self.name} has seen no sphere collide twice in {self.duration:.6g}; run longer"
+            raise InputError(msg)
+        edges = self._width * np.arange(BINS + 1)
+        x = (edges[1:] + edges[:-1]) / 2
+        # Of flights of length x there is room for T - x within the time T.
+        room = np.maximum(1 - self._as_time(x) / self.duration, 0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            per = 1 / (float(self._ends.total[1]) * self._width * room)
+            density, error = self._counts[:-1] * per, np.sqrt(self._counts[:-1]) * per
+        line = np.full(BINS, math.nan) if self._enskog is None else self._line(self._enskog, x)
+        said = "" if expected is None else f", theory {expected.value:.6g}"
+        return Table(
+            f"{self.name}: mean {mean}{said}",
+            {
+                self._unit: x,
+                "density": density,
+                "density_error": error,
+                "density_theory": line,
+            },
+            {self._unit: self._unit, "density": f"1/{self._unit}"},
+            "" if expected is None else ENSKOG,
+            (mean.note,) if mean.note else (),
+        )
+
+    def _as_time(self, x: Floats) -> Floats:
+        return x
+
+    def _line(self, enskog: "Flights", x: Floats) -> Floats:
+        return enskog.times(x)
+
+
+class FreePath(FreeTime):
+    """Distribution of the distance that a sphere goes between two events.
+
+    Speeds follow from the start and the impulses. Theory: p(l) = < (omega(v)^2/v)
+    exp(-omega(v) l/v) > / <omega(v)>, with the mean <v>/<omega>. Otherwise as `FreeTime`.
+    """
+
+    _unit = "length"
+
+    def begin(self, moment: Moment) -> None:
+        """Start the flight of every sphere at its velocity."""
+        super().begin(moment)
+        self._velocity = moment.state.velocity.T.copy()
+        self._speed = np.sqrt((self._velocity**2).sum(axis=0))
+
+    def _lengths(
+        self,
+        batch: Batch,
+        sphere: NDArray[np.int64],
+        event: NDArray[np.int64],
+        partner: NDArray[np.int64],
+        first: NDArray[np.bool_],
+    ) -> Floats:
+        """Times, by the speed before each event."""
+        time = super()._lengths(batch, sphere, event, partner, first)
+        weight = (1 - 2 * partner) / batch.spheres.mass[sphere]
+        begins = np.flatnonzero(first)
+        group = np.cumsum(first) - 1
+        square = np.zeros(len(time))
+        for axis in range(3):
+            kick = batch.impulse[axis][event] * weight
+            summed = np.cumsum(kick)
+            base = self._velocity[axis][sphere[begins]] - summed[begins] + kick[begins]
+            after = summed + base[group]
+            square += after * after
+            self._velocity[axis][sphere] = after  # of several the last one stays
+        after = np.sqrt(square)
+        before = np.empty(len(time))
+        before[1:] = after[:-1]
+        before[first] = self._speed[sphere[begins]]
+        self._speed[sphere] = after
+        return time * before
+
+    def _under_way(self) -> float:
+        flown = (self.last().time - self._since) * self._speed
+        return float(flown[self._free].sum())
+
+    def theory(self) -> Theory | None:
+        """The mean free path of kinetic theory, <v>/omega."""
+        if self._enskog is None:
+            return None
+        return Theory(self._enskog.mean_speed / self._enskog.rate, ENSKOG)
+
+    def _as_time(self, x: Floats) -> Floats:
+        mean_speed = float(self._gone.total[1] + self._under_way()) / self.duration
+        return x * (np.count_nonzero(self._free) / mean_speed)
+
+    def _line(self, enskog: "Flights", x: Floats) -> Floats:
+        return enskog.paths(x)
+
+
+class Flights:
+    """Free flights in Maxwell's gas of one kind, by kinetic theory.
+
+    Parameters
+    ----------
+    rate : float
+        Of collisions of a sphere.
+    thermal : float
+        sqrt(2 kT/m).
+    """
+
+    def __init__(self, rate: float, thermal: float) -> None:
+        self.rate, self.mean_speed = rate, 2 / math.sqrt(math.pi) * thermal
+        x = (np.arange(2000) + 0.5) * (6 / 2000)  # speeds over the thermal one
+        self._share = 4 / math.sqrt(math.pi) * x * x * np.exp(-x * x) * (6 / 2000)
+        erf = np.array([math.sqrt(math.pi) / 2 * math.erf(s) for s in x])
+        bare = np.exp(-x * x) + (2 * x + 1 / x) * erf
+        self._rates = rate * bare / float(bare @ self._share)
+        self._speeds = thermal * x
+
+    @classmethod
+    def of(cls, moment: Moment) -> "Flights | None":
+        """Those of a fluid; None where theory does not speak."""
+        state, world = moment.state, moment.world
+        kinds, kT = Kinds(state), mechanics.temperature(state, world)
+        fluid = is_periodic(world) and conserves_energy(world) and world.collide
+        if not (fluid and len(kinds) == 1 and not state.fixed.any() and kT > 0):
+            return None
+        if mechanics.packing_fraction(state, world) > theory.FREEZING:
+            return None
+        rate = float(kinds.rates(mechanics.volume(world), kT)[0, 0])
+        return cls(rate, math.sqrt(2 * kT / kinds.mass[0]))
+
+    def times(self, t: Floats) -> Floats:
+        """Density of free times."""
+        rates = self._rates
+        weight = self._share * rates**2 / self.rate
+        result: Floats = np.exp(-np.outer(t, rates)) @ weight
+        return result
+
+    def paths(self, length: Floats) -> Floats:
+        """Density of free paths."""
+        per = self._rates / self._speeds
+        weight = self._share * self._rates * per / self.rate
+        result: Floats = np.exp(-np.outer(length, per)) @ weight
+        return result
