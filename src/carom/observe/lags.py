@@ -31,7 +31,7 @@ class Lagged(Observable):
     Parameters
     ----------
     at : sequence of float, optional
-        The lags, rising and above 0; thirty from a tenth to thirty mean free times if left out.
+        The lags, rising and above 0; twenty from 0.2 to 60 mean free times if left out.
     """
 
     def __init__(self, at: Any = None) -> None:
@@ -60,7 +60,7 @@ class Lagged(Observable):
         self._open(moment)
 
     def _natural(self, free_time: float) -> Schedule:
-        return self._checked(Schedule(log_times(0.1 * free_time, 30 * free_time, 30)))
+        return self._checked(Schedule(log_times(0.2 * free_time, 60 * free_time, 20)))
 
     def sample(self, moment: Moment) -> None:
         """Take the mean over spheres for one lag."""

@@ -97,13 +97,13 @@ class PressureTensor(Observable):
 
         P_ab V = <sum m v_a v_b> + sum sigma n_a J_b / t
 
-    The first part is looked at after each mean free time, about the motion of the whole; the
+    The first part is looked at after each three mean free times, about the motion of the whole; the
     second adds all collisions between. Result: `Table` with the six components.
 
     Parameters
     ----------
     every : float, optional
-        Time between two looks at the velocities; a mean free time if left out.
+        Time between two looks at the velocities; three mean free times if left out.
 
     References
     ----------
@@ -121,7 +121,7 @@ class PressureTensor(Observable):
         if state.fixed.any():
             msg = f"{self.name} is of spheres that all move; make none fixed"
             raise InputError(msg)
-        lasts = mean_free_time(state, world) if self._interval is None else self._interval
+        lasts = 3 * mean_free_time(state, world) if self._interval is None else self._interval
         self.schedule = every(lasts)
         self._volume = mechanics.volume(world)
         self._series = Series(7)

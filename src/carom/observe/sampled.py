@@ -25,7 +25,7 @@ class Sampled(Observable):
     """
 
     #: Mean free times between samples, where nothing else is asked for.
-    apart = 2.0
+    apart = 3.0
 
     def __init__(self, every: float | None = None, *, at: Any = None) -> None:
         self._fixed = schedule(every, at)

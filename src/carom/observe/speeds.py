@@ -20,7 +20,8 @@ FEWEST = 5.0  #: expected in a bin, or it is joined with its neighbour: what chi
 class ChiSquare(NamedTuple):
     """Whether counts follow a law.
 
-    `value` is summed over bins with `freedom` left; `p` is the probability that they are as far off by chance.
+    `value` is chi-square of the bins, `freedom` how many of them are free; `p` is the
+    probability that counts are as far off by chance.
     """
 
     value: float
@@ -153,7 +154,6 @@ class HFunction(Sampled):
     Information Theory in Psychology (ed. H. Quastler), Free Press 1955, p. 95.
     """
 
-    apart = 0.5
     _bins = 24
 
     def begin(self, moment: Moment) -> None:
