@@ -57,7 +57,7 @@ class Estimate:
         if not math.isfinite(self.error):
             return f"{self.value:.6g} (error unknown)"
         if self.error == 0:
-            return f"{self.value:.12g}(0)"
+            return f"{self.value:.6g}(0)"
         power = math.floor(math.log10(self.error))
         if float(f"{self.error:.0e}") < 2 * 10.0**power:  # a 1 alone would be half as good
             power -= 1

@@ -33,7 +33,7 @@ class Cutter:
         for k in range(0, whole, BATCH):
             part = records[k : k + BATCH]
             self._hand_on(part, float(part["time"][-1]))
-        self._rest = records[whole:].copy()
+        self._rest = records[whole:]
 
     def flush(self, end: float) -> None:
         """Hand on what is left, up to a time."""
@@ -72,8 +72,8 @@ class Feed:
         takers = [o for o in self._all if o.takes_events]
         only = [o for o in takers if o.schedule is None]
         # Those with samples get their events before each; the others must not notice that.
-        self._shared = Cutter(only, moment)
         self._own = {id(o): Cutter([o], moment) for o in takers if o.schedule is not None}
+        self._cutters = [*self._own.values(), *([Cutter(only, moment)] if only else [])]
         self.takes_events = len(takers) > 0
         self._sample(moment)
 
@@ -84,7 +84,7 @@ class Feed:
 
     def events(self, records: NDArray[Any]) -> None:
         """Pass on events."""
-        for cutter in (self._shared, *self._own.values()):
+        for cutter in self._cutters:
             cutter.add(records)
 
     def moment(self, moment: Moment) -> None:
@@ -102,7 +102,7 @@ class Feed:
 
     def end(self, moment: Moment) -> None:
         """Finish the run; all have then seen all of it."""
-        for cutter in (self._shared, *self._own.values()):
+        for cutter in self._cutters:
             cutter.flush(moment.time)
         for observable in self._all:
             observable.end(moment)

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def draw(table: "Table", axes: Any = None) -> Any:
-    """Points with error bars, and theory as a line or as crosses where names are on the axis."""
+    """Points with error bars, lines where there are none; theory as a line, or crosses at names."""
     if axes is None:
         try:
             from matplotlib import pyplot
@@ -21,8 +21,12 @@ def draw(table: "Table", axes: Any = None) -> Any:
         axes = pyplot.figure().add_subplot()
     along, x = next(iter(table.columns.items()))
     named = not np.issubdtype(x.dtype, np.number)
-    for place, name in enumerate(table.measured):
+    shown = table.measured or list(table.columns)[1:]
+    for place, name in enumerate(shown):
         color = f"C{place}"
+        if name not in table.measured:
+            axes.plot(x, table[name], color=color, label=name)
+            continue
         y, error = table[name], table[f"{name}_error"]
         axes.errorbar(x, y, yerror(error), fmt="o", markersize=3, color=color, label=name)
         if f"{name}_theory" in table.columns:
@@ -33,7 +37,7 @@ def draw(table: "Table", axes: Any = None) -> Any:
     axes.set_title(table.title)
     unit = table.units.get(along, "")
     axes.set_xlabel(f"{along} ({unit})" if unit else along)
-    units = dict.fromkeys(table.units.get(name, "") for name in table.measured)
+    units = dict.fromkeys(table.units.get(name, "") for name in shown)
     axes.set_ylabel(" / ".join(unit for unit in units if unit))
     if not named and len(x) > 2 and x[0] > 0 and x[-1] / x[0] > 100:
         axes.set_xscale("log")

@@ -11,23 +11,23 @@ from carom.observe.batch import Batch, Moment
 from carom.observe.estimate import Estimate
 from carom.observe.kinds import Kinds, conserves_energy, is_periodic
 from carom.observe.observable import Observable
-from carom.observe.series import Rates
+from carom.observe.series import Rates, poisson
 from carom.observe.table import Table, Theory
 from carom.state import Floats
 
 BINS, MEANS = 50, 8.0  #: the distribution goes up to eight means, in fifty bins
-EACH, FEWEST = 8, 64  #: each eighth sphere is followed, but 64 at least
+EACH, FEWEST = 16, 64  #: each sixteenth sphere is followed, but 64 at least
 ENSKOG = f"Maxwell's gas of independent flights, up to packing fraction {theory.FREEZING}"
 
 
 class FreeTime(Observable):
     """Distribution of the time between two events of a sphere, with spheres or walls.
 
-    The flights of every eighth sphere are followed by the records of events (of 64 spheres at
-    least): all of them would slow a run down by a third. Of long ones fewer begin and end within the
-    run: the density allows for that. Its errors are those of independent flights. Theory, for
-    one kind of spheres in a periodic box: a sphere of speed v meets others at the rate
-    omega(v), so ::
+    The flights of every sixteenth sphere (of 64 at least) are followed by the records of
+    events: all of them would slow a run down by a third. Of long ones fewer begin and end
+    within the run: the density allows for that. Its errors are those of independent flights.
+    Theory, for one kind of spheres in a periodic box: a sphere of speed v meets others at the
+    rate omega(v), so ::
 
         p(t) = < omega(v)^2 exp(-omega(v) t) > / <omega(v)>
 
@@ -142,7 +142,7 @@ class FreeTime(Observable):
         room = np.maximum(1 - self._as_time(x) / self.duration, 0)
         with np.errstate(divide="ignore", invalid="ignore"):
             per = 1 / (float(self._ends.total[1]) * self._width * room)
-            density, error = self._counts[:-1] * per, np.sqrt(self._counts[:-1]) * per
+            density, error = self._counts[:-1] * per, poisson(self._counts[:-1]) * per
         line = np.full(BINS, math.nan) if self._enskog is None else self._line(self._enskog, x)
         said = "" if expected is None else f", theory {expected.value:.6g}"
         return Table(

@@ -166,7 +166,9 @@ class MSD(Lagged):
     def _line(self, t: Floats) -> Floats:
         assert self._enskog is not None
         tau = 1 / self._forgetting()
-        kT_over_m = math.pi / 8 * self._enskog.mean_speed**2
+        # About their centre of mass N spheres have 3 N - 3 degrees of freedom.
+        freedom = 1 - 1 / np.count_nonzero(self._free)
+        kT_over_m = math.pi / 8 * self._enskog.mean_speed**2 * freedom
         line: Floats = 6 * kT_over_m * tau * (t - tau * (1 - np.exp(-t / tau)))
         return line
 

@@ -150,3 +150,8 @@ class Rates:
     def rate(self, column: int = 0) -> Estimate:
         """Sum of a column over the time."""
         return self._series.ratio(1 + column, 0, self.total)
+
+
+def poisson(counts: NDArray[Any]) -> Floats:
+    """Standard errors of independent counts; nan where nothing was counted."""
+    return np.where(counts > 0, np.sqrt(counts), math.nan)

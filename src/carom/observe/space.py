@@ -11,7 +11,7 @@ from carom.errors import InputError
 from carom.observe.batch import Moment
 from carom.observe.kinds import Kinds, conserves_energy, refuse_walls
 from carom.observe.sampled import Sampled
-from carom.observe.series import Series
+from carom.observe.series import Series, poisson
 from carom.observe.table import Table
 from carom.state import Floats, State
 from carom.world import PLANE, World
@@ -24,7 +24,7 @@ class RDF(Sampled):
 
     In a periodic box, over all spheres alike. Each sample looks around 500 spheres, others each
     time. Errors are those of independent counts. Result: `Table`, at the middles of 0.02
-    mean diameters.
+    mean diameters, from where the smallest spheres touch.
 
     Parameters
     ----------
@@ -59,6 +59,10 @@ class RDF(Sampled):
             raise InputError(msg)
         bins = max(1, round(self._reach / (0.02 * diameter)))
         self._counts = np.zeros(bins)
+        self._contact = 2 * float(state.radius.min()) if world.collide else 0.0
+        if self._contact >= self._reach or len(state) < 2:
+            msg = f"{self.name} reaches to {self._reach:.6g}, where no two spheres can be"
+            raise InputError(msg)
         self._centres, self._offset = 0, 0
         self._density = (len(state) - 1) / mechanics.volume(world)
 
@@ -78,13 +82,15 @@ class RDF(Sampled):
         """g(r) so far."""
         self.over_samples()
         edges = np.linspace(0, self._reach, len(self._counts) + 1)
+        edges = edges[np.searchsorted(edges, self._contact, "right") - 1 :]
+        counts = self._counts[len(self._counts) + 1 - len(edges) :]
         expected = self._centres * self._density * 4 / 3 * math.pi * np.diff(edges**3)
         return Table(
             "Radial distribution",
             {
                 "distance": (edges[1:] + edges[:-1]) / 2,
-                "g": self._counts / expected,
-                "g_error": np.sqrt(self._counts) / expected,
+                "g": counts / expected,
+                "g_error": poisson(counts) / expected,
             },
             {"distance": "length"},
         )

@@ -10,6 +10,7 @@ from carom.errors import InputError
 from carom.observe.batch import Moment
 from carom.observe.kinds import conserves_energy, one_kind, unmoved
 from carom.observe.sampled import Sampled
+from carom.observe.series import poisson
 from carom.observe.table import Table
 from carom.state import Floats
 
@@ -126,7 +127,7 @@ class SpeedDistribution(Sampled):
             {
                 "speed": (self._edges[1:] + self._edges[:-1]) / 2,
                 "density": self._counts[:-1] * per,
-                "density_error": np.sqrt(self._counts[:-1]) * per,
+                "density_error": poisson(self._counts[:-1]) * per,
                 "density_theory": self._share / width,
             },
             {"speed": "length/time", "density": "time/length"},

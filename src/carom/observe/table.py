@@ -203,6 +203,8 @@ class Table:
     def plot(self, axes: Any = None) -> Any:
         """Draw the measured columns over the first one, and what theory says.
 
+        All columns if none has errors.
+
         Parameters
         ----------
         axes : matplotlib Axes, optional
