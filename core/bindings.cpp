@@ -62,7 +62,8 @@ auto make_engine(const Vectors& position, const Vectors& velocity, const Numbers
                  const Images& image, const Counts& count, double time, const Three& period,
                  const WallRows& walls, double restitution, double contact_time,
                  const Three& gravity, bool collide, double margin, double cell, bool log,
-                 double slice, const std::string& simd, bool sort, int grid, bool profile) {
+                 double slice, const std::string& simd, bool sort, int grid, int ahead,
+                 bool profile) {
     const size_t n = position.shape(0);
     if (velocity.shape(0) != n || mass.shape(0) != n || radius.shape(0) != n ||
         fixed.shape(0) != n || resting.shape(0) != n || image.shape(0) != n ||
@@ -82,7 +83,8 @@ auto make_engine(const Vectors& position, const Vectors& velocity, const Numbers
                              contact_time,  three(gravity),    collide};
     const nb::gil_scoped_release release;
     return std::make_unique<Engine>(
-        start, time, world, carom::Tuning{margin, cell, log, slice, simd, sort, profile, grid});
+        start, time, world,
+        carom::Tuning{margin, cell, log, slice, simd, sort, profile, grid, ahead});
 }
 
 auto state_of(const Engine& engine) {
@@ -132,7 +134,8 @@ NB_MODULE(_core, m) {
              nb::arg("restitution"), nb::arg("contact_time"), nb::arg("gravity"),
              nb::arg("collide"), nb::arg("margin") = 0.0, nb::arg("cell") = 0.0,
              nb::arg("log") = true, nb::arg("slice") = 0.05, nb::arg("simd") = "",
-             nb::arg("sort") = true, nb::arg("grid") = -1, nb::arg("profile") = false)
+             nb::arg("sort") = true, nb::arg("grid") = -1, nb::arg("ahead") = -1,
+             nb::arg("profile") = false)
         .def(
             "advance",
             [](Engine& e, double until, int64_t max_collisions, int64_t max_events) {

@@ -114,6 +114,25 @@ public:
     bool due_in(int later, double t) const { return bucket_of(t) == current_ + later; }
     const void* line(int later) const { return &lines_[size_t((current_ + later) & mask_)]; }
 
+    bool in_hand(double t) const { return bucket_of(t) <= current_; }
+
+    // Shows the events in hand to `moved`, which may give them a later time and then says so.
+    template <class Moved>
+    void review(const Pending& p, const Moved& moved) {
+        for (int k = 0; k < few_;) {
+            const int i = ids_[k];
+            if (p.events[i].t != times_[k] || !moved(i)) {
+                ++k;
+            } else if (in_hand(p.events[i].t)) {
+                times_[k++] = p.events[i].t;
+            } else {
+                times_[k] = times_[--few_];
+                ids_[k] = ids_[few_];
+                schedule(i, p);
+            }
+        }
+    }
+
     // Takes the event that `next` has shown off the list.
     void pop() {
         if (heap_.empty()) {
@@ -161,7 +180,7 @@ private:
         const Event& e = p.events[i];
         const int32_t own = p.labels[i];
         const int32_t partner = p.partner(e);
-        if (partner == kEscape) return {e.t, -1, own, i};
+        if (is_bookkeeping(partner)) return {e.t, -1, own, i};
         if (partner < 0) return {e.t, own, partner, i};
         const int32_t other = p.labels[partner];
         return {e.t, std::min(own, other), std::max(own, other), i};

@@ -69,7 +69,7 @@ Engine::Engine(const StartSpheres& start, double time, const World& world, const
 bool Engine::epoch_over(const Calendar::Due& due) const {
     if (epoch_events_ == 0 || (due.t < clock_.epoch && !busy_epoch())) return false;
     const Event& event = events_[size_t(due.id)];
-    return next_partner(event) > kEscape && !stale(event);
+    return !is_bookkeeping(next_partner(event)) && !stale(event);
 }
 
 Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
@@ -90,7 +90,7 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
         }
         Calendar::Due due;
         profile_.begin(k);
-        if (!calendar_.next(pending(), limit, due, [this] { look_ahead(); })) {
+        if (!calendar_.next(pending(), limit, due, [this] { open_bucket(); })) {
             if (until == kNever) return Stop::idle;
             user_ = asked_ = std::max(user_, limit);
             asked_time_ = until;
@@ -106,8 +106,11 @@ Stop Engine::advance(double until, int64_t max_collisions, int64_t max_events) {
         now_ = due.t;
         if (now_ > focused_until_) look_again();
         const Event& event = events_[size_t(due.id)];
-        if (next_partner(event) == kEscape) {
-            gridded_ ? change_cell(due.id) : escape(due.id);
+        if (const int32_t partner = next_partner(event); is_bookkeeping(partner)) {
+            if (partner != kEscape)
+                make_sure(due.id);
+            else
+                gridded_ ? change_cell(due.id) : escape(due.id);
             continue;
         }
         if (stale(event)) {

@@ -30,6 +30,9 @@
 
 namespace carom {
 
+// So many spheres are found in the caches: beyond, looking ahead pays (measured on both sides).
+constexpr size_t kListsInCache = 30000, kGridInCache = 64000;
+
 constexpr int kEndless = 60;  // doublings: such a shell is wider than positions are resolved
 
 // How one sphere moves as seen from another, from time `from` on.
@@ -133,9 +136,13 @@ private:
     void find_event(int i);
     void refresh(int i);
     Look look(int i) const;
-    void fetch_partner(const Look& look) const;
     void choose(int i, const Look& look, double& t, int32_t& partner) const;
+    void choose_exactly(int i, const Look& look, double& t, int32_t& partner) const;
+    void solve(int i);
+    void make_sure(int i);
+    void open_bucket();
     void decide(int i, const Look& look);
+    double contact(int i, int32_t j) const;
     double free_contact(int i, int32_t j) const;
     void settle_on(int i, double t, int32_t partner, double leaves, int axis);
     template <class Visit>
@@ -157,22 +164,24 @@ private:
     Vec3 ahead(const Motion& at, double r, int widening) const;
     void make_shell(int i);
     void renew_shell(int i);
-    void join(int32_t j, int i);
     bool crowded(int i) const;
     int least_widening(int i) const { return spheres_[size_t(i)].r > giant_ ? 0 : least_widening_; }
     double margin(int widening) const;
     Shell shell(int i) const;
     void place_shell(int i, const Vec3& centre, int widening);
     void exchange(int i);
+    void tell_neighbours(int i);
     void focus();
     void look_again();
 
     // ahead.cpp
     void look_ahead() const;
+    void ask_for_pair(int i, int32_t j) const;
     void ask_for_rows(int i, const Event& e) const;
     void ask_for_row_neighbours(int i, const Event& e) const;
     GridBlock new_cells(int i, const Event& e) const;
     void ask_for_cells(int i, const Event& e) const;
+    void ask_for_partners_cells(const Event& e) const;
     void ask_for_cell_neighbours(int i, const Event& e) const;
 
     // execute.cpp
@@ -216,10 +225,11 @@ private:
     Array<Watch> watches_;      // inelastic runs only
 
     const Kernels* kernels_;
-    bool glancing_ = false;  // one image, no gravity: pairs are looked through at a glance
+    bool glancing_ = false;  // one image: pairs are looked through at a glance
     Lens lens_;
     double span_ = 1;           // for such a time: an epoch, longer where little happens
     double focused_until_ = 0;  // glances are too old after that
+    double doubt_ = 0;          // a bound is rarely this much earlier than what it bounds
     int64_t focused_events_ = 0;
     Array<Glance> glances_;
 
@@ -240,7 +250,8 @@ private:
     Cells cells_;
     Calendar calendar_;
     Found found_;
-    std::vector<int32_t> outgrown_;  // rows that have become too long
+    std::vector<int32_t> left_, joined_;  // a row that has changed
+    std::vector<int32_t> outgrown_;       // rows that have become too long
 
     Work work_;
     Profile profile_;
@@ -292,14 +303,19 @@ inline Shell Engine::shell(int i) const {
 
 // What changes of a glance: all but the radius, which `focus` gives.
 inline void Engine::refresh(int i) {
-    const Sphere& s = spheres_[size_t(i)];
-    const Vec3 here = motion(i, now_).x;
+    auto [here, v] = motion(i, now_);
+    if (gravity_) {  // seen by one who falls along, all that fall fly straight on
+        const double fall = now_ - lens_.start;
+        here -= world_.gravity * (0.5 * fall * fall);
+        v -= world_.gravity * fall;
+    }
     const double scale = lens_.scale;
     Glance& g = glances_[size_t(i)];
-    const float vx = float(s.v.x * scale), vy = float(s.v.y * scale), vz = float(s.v.z * scale);
+    const float vx = float(v.x * scale), vy = float(v.y * scale), vz = float(v.z * scale);
     const float v2 = vx * vx + vy * vy + vz * vz;
     bool clear = v2 < lens_.fastest2 && g.r > 0;
-    if (v2 < 0x1p-60f) clear = clear && s.v.x == 0 && s.v.y == 0 && s.v.z == 0;
+    if (v2 < 0x1p-60f) clear = clear && v.x == 0 && v.y == 0 && v.z == 0;
+    if (gravity_) clear = clear && falls_[size_t(i)];
     if (!gridded_) {
         const double far = std::abs(here.x) + std::abs(here.y) + std::abs(here.z);
         clear = clear && far < lens_.farthest && rows_.line(i).margin <= 4;

@@ -14,14 +14,15 @@ void Engine::execute(int i) {
         predict(i);
         return;
     }
-    // In the order of their labels, so that no bit depends on who is where in memory.
-    const bool first = labels_[size_t(i)] < labels_[size_t(e.partner)];
-    const int32_t lo = first ? i : e.partner, hi = first ? e.partner : i;
+    // In the order of their labels, so that no bit depends on who is where in memory. A plain
+    // collision is the same seen from either side.
+    const bool turned = (!plain_ || logging_) && labels_[size_t(i)] > labels_[size_t(e.partner)];
+    const int32_t lo = turned ? e.partner : i, hi = turned ? i : e.partner;
     const Image m = several_images_ ? images_[size_t(i)] : Image{};
     if (plain_)
         collide_plain(lo, hi, e.t);
     else
-        collide(lo, hi, first ? m : Image{} - m, e.t);
+        collide(lo, hi, turned ? Image{} - m : m, e.t);
     ++collisions_;
     profile_.lap(Profile::collide);
     if (crowded(lo)) make_shell(lo);
@@ -169,7 +170,7 @@ void Engine::anchor(int32_t i, const Vec3& x, const Vec3& v, double t) {
     s.v = v;
     s.t = t;
     wrap(i);
-    fresh_[size_t(i)] = 1;
+    if (gravity_) fresh_[size_t(i)] = 1;
     ++events_[size_t(i)].count;
     if (!last_touch_.empty()) last_touch_[size_t(i)] = t;
 }

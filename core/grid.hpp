@@ -191,9 +191,11 @@ public:
 
     void fetch_block(const GridBlock& b) const {
         for (int z = 0; z < b.z.n; ++z)
-            for (int y = 0; y < b.y.n; ++y)
-                for (int x = 0; x < b.x.n; ++x)
-                    fetch(&cells_[size_t(b.z.cell[z] + b.y.cell[y] + b.x.cell[x])]);
+            for (int y = 0; y < b.y.n; ++y) {
+                const int32_t row = b.z.cell[z] + b.y.cell[y];
+                fetch(&cells_[size_t(row + b.x.cell[0])]);
+                if (b.x.n > 1) fetch(&cells_[size_t(row + b.x.cell[b.x.n - 1])]);
+            }
     }
 
     // Cells behind others.

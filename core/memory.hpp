@@ -16,7 +16,7 @@ namespace carom {
 // a function which only asks has no effect, and drop the call.
 inline void fetch(const void* line) {
 #if defined(__GNUC__) && defined(__x86_64__)
-    asm volatile("prefetcht0 %0" : : "m"(*static_cast<const char*>(line)));
+    asm volatile("prefetcht1 %0" : : "m"(*static_cast<const char*>(line)));
 #elif defined(__GNUC__)
     __builtin_prefetch(line);
 #else

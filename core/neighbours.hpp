@@ -1,6 +1,7 @@
 // Who is near: one row of neighbours per sphere, 128 bytes, growing when a row needs more.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -81,8 +82,11 @@ public:
     void assign(int i, std::span<const int32_t> ids) {
         Row& r = rows_[size_t(i)];
         if (r.n == Row::kLong) shorten(r);
-        clear(r, i);
-        for (const int32_t j : ids) add(i, j);
+        const size_t n = std::min(ids.size(), size_t(Row::kPlaces));
+        std::copy_n(ids.begin(), n, r.id);
+        std::fill(r.id + n, r.id + Row::kPlaces, i);
+        r.n = int16_t(n);
+        for (const int32_t j : ids.subspan(n)) add(i, j);
     }
 
     size_t bytes() const {

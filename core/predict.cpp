@@ -168,8 +168,7 @@ inline void Engine::settle_on(int i, double t, int32_t partner, double leaves, i
         partner = escapes ? kEscape : partner;
     }
     e.partner = partner;
-    const int32_t somebody = partner >= 0 ? partner : i;
-    e.partner_count = events_[size_t(somebody)].count;
+    if (partner >= 0) e.partner_count = events_[size_t(partner)].count;
 }
 
 inline void Engine::look_at_exit(const Motion& at, Grid::Cell cell, Look& out) const {
@@ -189,7 +188,7 @@ void Engine::look_through(int i, const GridBlock& block, Look& out) const {
                 row, now_, lens_.time);
 }
 
-// First half of a prediction without gravity: who of the neighbours may be met first, at a glance.
+// First half of a prediction: who of the neighbours may be met first, at a glance.
 inline Engine::Look Engine::look(int i) const {
     const Motion at = motion(i, now_);
     Look out{kNever, kNone, kNever, kNever};
@@ -222,13 +221,38 @@ inline void Engine::decide(int i, const Look& look) {
     settle_on(i, t, partner, look.leaves, look.axis);
 }
 
+// Exact times are for what happens soon. Of two bounds far apart the first is next whatever the
+// exact time, which is solved for when the bound is due: many a partner is hit by somebody else
+// before, and by then it has come from memory.
 inline void Engine::choose(int i, const Look& look, double& t, int32_t& partner) const {
+    if (look.first == kNever) return;
     // On a grid what is met later is known for good, so that a crossing need look at new cells
     // only.
+    const double limit = gridded_ ? t : std::min(t, look.leaves);
+    const bool unsure = is_guess(partner);
+    if (look.first > limit + (unsure ? doubt_ : 0)) return;
+    if (far_ && look.first + doubt_ < std::min(limit, look.second) && look.partner != i &&
+        !calendar_.in_hand(look.first)) {
+        t = look.first;
+        partner = guess_of(look.partner);
+        return;
+    }
+    if (unsure) {
+        Next best;
+        predict_walls(i, best);
+        each_near(i, [&](int32_t j) { consider(i, j, best); });
+        t = best.t;
+        partner = best.partner;
+        return;
+    }
+    choose_exactly(i, look, t, partner);
+}
+
+void Engine::choose_exactly(int i, const Look& look, double& t, int32_t& partner) const {
     const double leaves = gridded_ ? kNever : look.leaves;
     double limit = std::min(t, leaves);
     if (look.first < kNever && look.first <= limit && look.partner != i) {
-        const double met = free_contact(i, look.partner);
+        const double met = contact(i, look.partner);
         if (met < t ||
             (met == t && t < kNever && precedes(i, {met, look.partner, {}}, {t, partner, {}}))) {
             t = met;
@@ -241,6 +265,42 @@ inline void Engine::choose(int i, const Look& look, double& t, int32_t& partner)
     each_near(i, [&](int32_t j) { consider(i, j, best); });
     t = best.t;
     partner = best.partner;
+}
+
+// A guess is due: its exact time, if it is what the bound promised. Otherwise its partner has been
+// hit since, or was only brushed: all are looked at again, and this time solved.
+void Engine::solve(int i) {
+    Event& e = events_[size_t(i)];
+    const int32_t j = guessed(e.partner);
+    const double bound = e.t, met = contact(i, j);
+    Look seen{kNever, kNone, kNever, kNever};
+    if (met >= bound && met <= bound + doubt_) {
+        if (gridded_) look_at_exit(motion(i, now_), Grid::unpack(e.cell), seen);
+        return settle_on(i, met, j, seen.leaves, seen.axis);
+    }
+    ++work_.predictions;
+    ++work_.stale;
+    refresh(i);
+    seen = look(i);
+    Next wall;
+    predict_walls(i, wall);
+    choose_exactly(i, seen, wall.t, wall.partner);
+    settle_on(i, wall.t, wall.partner, seen.leaves, seen.axis);
+}
+
+void Engine::make_sure(int i) {
+    solve(i);
+    calendar_.schedule(i, pending());
+}
+
+void Engine::open_bucket() {
+    if (!far_) return;
+    look_ahead();
+    calendar_.review(pending(), [this](int i) {
+        if (!is_guess(next_partner(events_[size_t(i)]))) return false;
+        solve(i);
+        return true;
+    });
 }
 
 // The sphere enters the next cell of the grid. What it would have met, it still will; only the nine
@@ -271,6 +331,13 @@ void Engine::change_cell(int i) {
     profile_.lap(Profile::queue);
 }
 
+inline double Engine::contact(int i, int32_t j) const {
+    if (!gravity_) return free_contact(i, j);
+    Next met;
+    consider(i, j, met);
+    return met.t;
+}
+
 // When two in free flight meet in the one image that they can: what `consider` finds for them.
 inline double Engine::free_contact(int i, int32_t j) const {
     ++work_.exact;
@@ -293,12 +360,6 @@ void Engine::predict(int i) {
     profile_.lap(Profile::queue);
 }
 
-inline void Engine::fetch_partner(const Look& look) const {
-    if (look.partner < 0) return;
-    fetch(&spheres_[size_t(look.partner)]);
-    fetch(&events_[size_t(look.partner)]);
-}
-
 // Both partners of a collision: the second is looked at while the first waits for memory.
 void Engine::predict_both(int i, int j) {
     if (!glancing_) {
@@ -309,10 +370,7 @@ void Engine::predict_both(int i, int j) {
     work_.predictions += 2;
     refresh(i);
     refresh(j);
-    const Look a = look(i);
-    fetch_partner(a);
-    const Look b = look(j);
-    fetch_partner(b);
+    const Look a = look(i), b = look(j);
     decide(i, a);
     decide(j, b);
     profile_.lap(Profile::predict);

@@ -8,9 +8,10 @@ namespace carom {
 namespace {
 
 constexpr double kSpherical = 4.18879020478639098;  // 4 pi / 3
-constexpr double kDilute = 0.3;                     // packing fraction up to which a grid is faster
-constexpr double kPerCell = 0.8;                    // spheres in a cell of it
-constexpr size_t kMany = size_t(1) << 22;           // so many take too much memory in lists
+constexpr double kDilute = 0.3;            // packing fraction up to which a grid is faster,
+constexpr double kDiluteAndFar = 0.2;      // and where spheres come from memory
+constexpr double kPerCell = 0.8;           // spheres in a cell of it
+constexpr size_t kMany = size_t(1) << 22;  // so many take too much memory in lists
 
 double median_radius(const Array<Sphere>& spheres) {
     const double first = spheres.front().r;
@@ -76,8 +77,8 @@ void Engine::choose_shells(const Tuning& tuning) {
     giant_ = 2 * r;
     least_widening_ = 0;
     while (margin(least_widening_ - 1) >= 0.1 * r) --least_widening_;
-    glancing_ = !gravity_ && !several_images_;
-    plain_ = glancing_ && world_.restitution == 1 && last_touch_.empty();
+    glancing_ = !several_images_;
+    plain_ = glancing_ && !gravity_ && world_.restitution == 1 && last_touch_.empty();
     if (several_images_) images_.resize(size());
 }
 
@@ -152,10 +153,11 @@ bool Engine::choose_grid(const Tuning& tuning) {
     if (!room(centre, size)) return false;
     const double volume = size.x * size.y * size.z;
     const double packing = kSpherical * section / volume;
-    if (tuning.grid < 0 && packing > kDilute && spheres_.size() < kMany) return false;
+    const double dilute = spheres_.size() > kGridInCache ? kDiluteAndFar : kDilute;
+    if (tuning.grid < 0 && packing > dilute && spheres_.size() < kMany) return false;
     if (largest > 2 * median_radius(spheres_)) return false;
-    const double width = std::max(2 * largest * (1 + 1e-6),
-                                  std::cbrt(kPerCell * volume / double(size_t(spheres_.size()))));
+    const double width =
+        std::max(2 * largest * (1 + 1e-6), std::cbrt(kPerCell * volume / double(spheres_.size())));
     const Vec3& p = world_.period;
     const bool periodic[3] = {p.x > 0, p.y > 0, p.z > 0};
     if (!grid_.reset(tuning.cell > 0 ? std::max(width, tuning.cell) : width, centre, size, periodic,

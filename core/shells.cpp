@@ -37,9 +37,12 @@ void Engine::escape(int i) {
         if (cells_.distance2(motion(i, now_).x, shell(i).centre) < 0.5 * room * room)
             return predict(i);
     }
-    make_shell(i);
+    // The rows that change come from memory while the sphere's own is looked through.
+    renew_shell(i);
     profile_.lap(Profile::rebuild);
     predict(i);
+    tell_neighbours(i);
+    profile_.lap(Profile::rebuild);
 }
 
 bool Engine::crowded(int i) const {
@@ -60,13 +63,7 @@ Vec3 Engine::ahead(const Motion& at, double r, int widening) const {
 // others may fly, thousands of them, and each would look at its sphere ever after: it is remade.
 void Engine::make_shell(int i) {
     renew_shell(i);
-    while (!outgrown_.empty()) {
-        const int32_t j = outgrown_.back();
-        outgrown_.pop_back();
-        if (j == i || rows_.size(j) <= kMob || !crowded(j)) continue;
-        renew_shell(j);
-        predict(j);
-    }
+    tell_neighbours(i);
 }
 
 void Engine::renew_shell(int i) {
@@ -98,37 +95,46 @@ void Engine::renew_shell(int i) {
     exchange(i);
 }
 
-void Engine::join(int32_t j, int i) {
-    rows_.add(j, i);
-    if (rows_.line(j).n < 0 && rows_.size(j) > kMob) outgrown_.push_back(j);
-}
-
-// The row becomes what was found. Rows are symmetric: whoever joins or leaves this row gains or
-// loses i in its own.
+// The row becomes what was found. Rows are symmetric: who joins or leaves this row gains or loses i
+// in its own, see tell_neighbours.
 void Engine::exchange(int i) {
     const std::span<const int32_t> now = found_.ids();
     const Row& old = rows_.line(i);
+    left_.clear();
+    joined_.clear();
     if (old.n >= 0 && now.size() <= Row::kPlaces) {
         Difference d = kernels_->difference(reinterpret_cast<const int32_t*>(&old), old.n,
                                             now.data(), int(now.size()));
-        for (uint32_t left = d.gone; left != 0; left &= left - 1)
-            fetch(&rows_.line(old.id[std::countr_zero(left)]));
-        for (uint32_t left = d.fresh; left != 0; left &= left - 1)
-            fetch(&rows_.line(now[size_t(std::countr_zero(left))]));
-        for (; d.gone != 0; d.gone &= d.gone - 1) rows_.remove(old.id[std::countr_zero(d.gone)], i);
+        for (; d.gone != 0; d.gone &= d.gone - 1) left_.push_back(old.id[std::countr_zero(d.gone)]);
         for (; d.fresh != 0; d.fresh &= d.fresh - 1)
-            join(now[size_t(std::countr_zero(d.fresh))], i);
+            joined_.push_back(now[size_t(std::countr_zero(d.fresh))]);
+        for (const int32_t j : left_) fetch(&rows_.line(j));
+        for (const int32_t j : joined_) fetch(&rows_.line(j));
     } else {
         std::vector<int32_t> before, after(now.begin(), now.end());
         for (const Row& row : rows_.of(i)) before.insert(before.end(), row.id, row.id + row.n);
         std::sort(before.begin(), before.end());
         std::sort(after.begin(), after.end());
-        for (const int32_t j : before)
-            if (!std::binary_search(after.begin(), after.end(), j)) rows_.remove(j, i);
-        for (const int32_t j : after)
-            if (!std::binary_search(before.begin(), before.end(), j)) join(j, i);
+        std::ranges::set_difference(before, after, std::back_inserter(left_));
+        std::ranges::set_difference(after, before, std::back_inserter(joined_));
     }
     rows_.assign(i, now);
+}
+
+void Engine::tell_neighbours(int i) {
+    for (const int32_t j : left_) rows_.remove(j, i);
+    for (const int32_t j : joined_) {
+        rows_.add(j, i);
+        if (rows_.line(j).n < 0 && rows_.size(j) > kMob) outgrown_.push_back(j);
+    }
+    while (!outgrown_.empty()) {
+        const int32_t j = outgrown_.back();
+        outgrown_.pop_back();
+        if (j == i || rows_.size(j) <= kMob || !crowded(j)) continue;
+        renew_shell(j);
+        tell_neighbours(j);
+        predict(j);
+    }
 }
 
 // An epoch in which little happens may go on for ever. What is done for all spheres, and what suits
@@ -149,8 +155,8 @@ void Engine::focus() {
     focused_until_ = now_ + 1.5 * span_;
     if (!glancing_) return;
     glances_.resize(size());
-    // Beyond the caches: measured where looking ahead begins to pay.
-    far_ = size() > (gridded_ ? 64000 : 20000);
+    far_ =
+        tuning_.ahead < 0 ? size() > (gridded_ ? kGridInCache : kListsInCache) : tuning_.ahead == 1;
     const double epoch = span_;
     double energy = 0;
     for (const Sphere& s : spheres_) energy += norm2(s.v);
@@ -171,12 +177,19 @@ void Engine::focus() {
     }
     lens_.ticks_per_time = 0x1p30 / epoch;
     lens_.tick = float(0x1p-30 * epoch / lens_.time);
-    lens_.blur = float(0x1p-15 * cell_ / length + 16 * widest);
+    lens_.blur = float((gravity_ ? 0x1p-13 : 0x1p-15) * cell_ / length + 16 * widest);
     lens_.still = lens_.blur * lens_.blur;
-    const float fastest = lens_.blur / (16 * lens_.tick);
+    float fastest = lens_.blur / (16 * lens_.tick);
+    if (gravity_) {
+        // So long at most a sphere that goes up and comes down stays in its shell, and what is
+        // rounded off its velocity must not become a distance.
+        const double stays = 2 * std::sqrt(32 * cell_ / norm(world_.gravity)) / lens_.time;
+        fastest = std::min(fastest, float(0x1p21 * lens_.blur / stays));
+    }
     lens_.fastest2 = fastest * fastest;
     lens_.farthest = 0x1p30 * cell_;
     lens_.scale = lens_.time / length;
+    doubt_ = 0x1p-10 * lens_.time;
     lens_.start = now_;
     for (size_t i = 0; i < size(); ++i) {
         const double r = spheres_[i].r;

@@ -15,6 +15,16 @@ constexpr int32_t kWoke = -(1 << 21);            // a resting sphere was pushed 
 constexpr int32_t kCameToRest = -(1 << 20) - 1;  // kCameToRest - k: came to rest on wall k
 constexpr int32_t wall_code(int k) { return -1 - k; }
 
+// A collision with sphere j of which only a lower bound of the time is known yet.
+constexpr int32_t guess_of(int32_t j) { return kEscape + 1 + j; }
+constexpr int32_t guessed(int32_t guess) { return guess - (kEscape + 1); }
+constexpr bool is_bookkeeping(int32_t partner) { return partner < -(1 << 30); }
+constexpr bool is_guess(int32_t partner) { return partner > kEscape && is_bookkeeping(partner); }
+// The sphere that is met, for certain or as a guess; negative if none is.
+constexpr int32_t sphere_met(int32_t partner) {
+    return is_guess(partner) ? guessed(partner) : partner;
+}
+
 struct Image {  // whole boxes
     int32_t x = 0, y = 0, z = 0;
     bool operator==(const Image&) const = default;

@@ -66,6 +66,7 @@ struct Tuning {         // bookkeeping only: no bit of a trajectory depends on i
     bool sort = true;      // neighbours in space become neighbours in memory
     bool profile = false;  // ask how long each part takes
     int grid = -1;         // 1: a grid if it can be, 0: lists; -1 = chosen from the density
+    int ahead = -1;        // 1: look ahead of time, 0: do not; -1 = chosen from the size
 };
 
 struct Work {  // what the engine has done; bookkeeping only

@@ -128,12 +128,13 @@ int main() {
         const uint64_t hash = fingerprint(scene, tuning);
         std::printf("%016llx %s\n", static_cast<unsigned long long>(hash), scene.name);
         for (const std::string& simd : simd_levels())
-            for (const int grid : {0, 1}) {
+            for (const int choice : {0, 1, 2, 3}) {
                 tuning.simd = simd;
-                tuning.grid = grid;
-                tuning.sort = grid == 0;
+                tuning.grid = choice % 2;
+                tuning.ahead = choice / 2;
+                tuning.sort = tuning.grid == tuning.ahead;
                 if (fingerprint(scene, tuning) == hash) continue;
-                std::printf("differs: %s with %s, grid %d\n", scene.name, simd.c_str(), grid);
+                std::printf("differs: %s with %s, choice %d\n", scene.name, simd.c_str(), choice);
                 same = false;
             }
     }

@@ -83,15 +83,17 @@ std::vector<Tuning> every_tuning() {
     std::vector<Tuning> all;
     for (const std::string& simd : simd_levels())
         for (const int grid : {0, 1})
-            for (const bool sort : {true, false}) {
-                Tuning tuning;
-                tuning.simd = simd;
-                tuning.grid = grid;
-                tuning.sort = sort;
-                all.push_back(tuning);
-            }
-    all.push_back({0.05, 0, false, 1e-3, "", true, 0});
-    all.push_back({0.8, 5, true, 0.05, "", true, 0});
+            for (const bool sort : {true, false})
+                for (const int ahead : {0, 1}) {
+                    Tuning tuning;
+                    tuning.simd = simd;
+                    tuning.grid = grid;
+                    tuning.sort = sort;
+                    tuning.ahead = ahead;
+                    all.push_back(tuning);
+                }
+    all.push_back({0.05, 0, false, 1e-3, "", true, false, 0, 1});
+    all.push_back({0.8, 5, true, 0.05, "", true, false, 0, 0});
     return all;
 }
 

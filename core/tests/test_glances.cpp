@@ -91,7 +91,8 @@ struct Setting {
     double around;         // open: how far from the origin
     double ratio;          // of sizes
     int grid;
-    double gap;  // between spheres
+    double gap;       // between spheres
+    double fall = 0;  // gravity, in speed^2 / length
 };
 
 // Many mean pairs in one engine, looked at from both sides, at once and some time later.
@@ -103,6 +104,7 @@ int compare_pairs(const Setting& s, uint64_t seed, int pairs, int times) {
     const double half =
         s.period > 0 ? 0.5 * s.period * l : 0.5 * (1 + s.gap) * l * std::cbrt(2.0 * pairs);
     const Vec3 middle = draw.unit() * (s.around * l);
+    world.gravity = draw.unit() * (s.fall * s.speed * s.speed / l);
     Tuning tuning;
     tuning.grid = s.grid;
     std::vector<StartSphere> spheres(size_t(2 * pairs));
@@ -114,6 +116,8 @@ int compare_pairs(const Setting& s, uint64_t seed, int pairs, int times) {
         if (draw.whole(5) == 0) p.velocity = {};
         if (draw.whole(3) == 0) p.radius *= std::pow(s.ratio, draw.uniform(-1, 0.2));
         if (draw.whole(9) == 0) p.velocity = p.velocity * draw.small(-30);
+        p.fixed = s.fall > 0 && draw.whole(9) == 0;
+        if (p.fixed) p.velocity = {};
     }
     // Once to learn what the engine will choose, then again with the pairs.
     int met = 0;
@@ -128,6 +132,7 @@ int compare_pairs(const Setting& s, uint64_t seed, int pairs, int times) {
                              : 2 * EngineProbe::margin(first, widening.back());
         if (s.period > 0) far = std::min(far, half - p.radius - q.radius);
         if (far > 0) make_mean(draw, p, q, far, s.speed);
+        if (q.fixed) q.velocity = {};
     }
     Engine engine(spheres, 0, world, tuning);
     const double epoch = EngineProbe::epoch(engine);
@@ -158,7 +163,7 @@ int compare_pairs(const Setting& s, uint64_t seed, int pairs, int times) {
 TEST(a_glance_is_never_too_late) {
     for (const double length : {1.0, 1e-9, 3e7})
         for (const double speed : {1.0, 700.0}) {
-            int met = 0;
+            int met = 0, falling = 0;
             for (uint64_t seed = 0; seed < 30; ++seed)
                 for (const double gap : {0.05, 0.5, 3.0, 20.0}) {
                     const double ratio = seed % 3 == 0 ? 1 : seed % 3 == 1 ? 10 : 1000;
@@ -167,8 +172,12 @@ TEST(a_glance_is_never_too_late) {
                                          seed, 32, 3);
                     met += compare_pairs({length, speed, side, 0, ratio, 0, gap}, seed, 32, 3);
                     met += compare_pairs({length, speed, side, 0, 1, 1, gap}, seed, 32, 3);
+                    for (const double fall : {0.01, 3.0})
+                        falling +=
+                            compare_pairs({length, speed, 0, 0, ratio, 0, gap, fall}, seed, 32, 3);
                 }
             met += compare_pairs({length, speed, 1e7, 0, 1, 0, 1}, 3, 32, 3);
             CHECK(met > 5000);
+            CHECK(falling > 2000);
         }
 }

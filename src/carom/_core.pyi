@@ -54,6 +54,7 @@ class Engine:
         simd: str = "",
         sort: bool = True,
         grid: int = -1,
+        ahead: int = -1,
         profile: bool = False,
     ) -> None: ...
     def advance(self, until: float, max_collisions: int, max_events: int) -> int:

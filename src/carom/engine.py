@@ -117,9 +117,10 @@ class FastEngine:
 
     Cost per collision does not grow with the number of spheres. `log=False` keeps no event
     records. `margin`, `cell`, `slice_seconds`, `simd` (the instruction set), `sort` (neighbours in
-    space become neighbours in memory) and `grid` (1: neighbours on a grid where that can be, 0: in
-    lists, -1: whichever is faster) are bookkeeping for tests: the trajectory's bits do not depend
-    on them; `profile` asks how long each part takes. Any thread may call it: a call waits for the
+    space become neighbours in memory), `grid` (1: neighbours on a grid where that can be, 0: in
+    lists, -1: whichever is faster) and `ahead` (1: look ahead at what coming events will touch, and
+    solve for their times no sooner, 0: do not, -1: where spheres come from memory) are bookkeeping
+    for tests: the trajectory's bits do not depend on them; `profile` asks how long each part takes. Any thread may call it: a call waits for the
     slice in hand.
     """
 
@@ -135,6 +136,7 @@ class FastEngine:
         simd: str = "",
         sort: bool = True,
         grid: int = -1,
+        ahead: int = -1,
         profile: bool = False,
     ) -> None:
         self._start = _unchanging(state)
@@ -172,6 +174,7 @@ class FastEngine:
                 simd=simd,
                 sort=sort,
                 grid=grid,
+                ahead=ahead,
                 profile=profile,
             )
         except ValueError as error:  # such as an instruction set that this machine does not have

@@ -80,16 +80,24 @@ def test_the_path_is_the_stored_one(name):
 @each_scene
 @pytest.mark.parametrize("simd", simd_levels())
 @pytest.mark.parametrize("grid", [0, 1])
-@pytest.mark.parametrize("sort", [False, True])
-def test_with_every_instruction_set_on_a_grid_or_in_lists_sorted_or_not(name, simd, grid, sort):
-    path = fingerprint(STORED[name], simd=simd, grid=grid, sort=sort)
+@pytest.mark.parametrize("ahead", [0, 1])
+def test_with_every_instruction_set_on_a_grid_or_in_lists_looking_ahead_or_not(
+    name, simd, grid, ahead
+):
+    path = fingerprint(STORED[name], simd=simd, grid=grid, ahead=ahead)
     assert path == STORED[name]["sha256"]
 
 
 @each_scene
 @pytest.mark.parametrize(
     "bookkeeping",
-    [{"margin": 0.1}, {"margin": 0.7, "cell": 6.0}, {"cell": 3.0, "grid": 1}],
+    [
+        {"margin": 0.1, "ahead": 1},
+        {"margin": 0.7, "cell": 6.0},
+        {"cell": 3.0, "grid": 1, "ahead": 1},
+        {"sort": False},
+        {"sort": False, "grid": 1},
+    ],
     ids=str,
 )
 def test_with_other_shells_and_cells(name, bookkeeping):

@@ -1,4 +1,4 @@
-"""Instruction sets, the grid, sorting: no bit depends on what machine and density choose."""
+"""Instruction sets, grid, looking ahead, sorting: no bit depends on what the engine chooses."""
 
 import ctypes
 import ctypes.util
@@ -34,8 +34,8 @@ def story(state, world, until, **bookkeeping):
 @each_kind
 def test_every_instruction_set_tells_the_same_story(kind):
     told = {
-        story(*KINDS[kind], simd=simd, grid=grid, sort=sort)
-        for simd, grid, sort in product(LEVELS, (0, 1), (False, True))
+        story(*KINDS[kind], simd=simd, grid=grid, ahead=ahead, sort=sort)
+        for simd, grid, ahead, sort in product(LEVELS, (0, 1), (0, 1), (False, True))
     }
     assert len(told) == 1
 
@@ -65,9 +65,8 @@ def test_order_in_memory_tells_nothing(kind):
     """Sorted, numbers differ inside; a checkpoint and the records carry those of the outside."""
     state, world, until = LARGE[kind]
     told = {
-        story(state, world, until, grid=grid, sort=sort)
-        for grid in (0, 1)
-        for sort in (False, True)
+        story(state, world, until, grid=grid, ahead=ahead, sort=sort)
+        for grid, ahead, sort in product((0, 1), (0, 1), (False, True))
     }
     for sort in (False, True):
         engine = FastEngine(state, world, sort=sort)
