@@ -104,7 +104,7 @@ def haff_temperature(
     Examples
     --------
     >>> round(haff_temperature(10.0, restitution=0.9, rate=0.77), 4)
-    0.6465
+    0.6471
     """
     per_time = (1 - restitution**2) * rate * _energy_factor(restitution, extrapolate) / 6
     return temperature / (1 + time * per_time) ** 2

@@ -14,9 +14,7 @@ from carom.theory.numerics import root
 
 GARZO = "V. Garzo, J. W. Dufty, Phys. Rev. E 60, 5706 (1999), doi:10.1103/PhysRevE.60.5706"
 #: As far as simulations of the Boltzmann equation and molecular dynamics have been compared.
-TRIED = Range(
-    0, 0.1, above="above 0.1 kinds are not as independent as taken here", far=(0, FREEZING)
-)
+TRIED = Range(0, 0.1, above="above 0.1 it was not compared with simulations", far=(0, FREEZING))
 
 
 @formula(
@@ -69,7 +67,7 @@ def temperature_rates(
     Examples
     --------
     >>> temperature_rates([0.5, 0.5], 1000, count=[50, 50], temperature=[1, 2]).round(4)
-    array([ 0.1732, -0.1732])
+    array([ 0.3312, -0.3312])
     """
     rates = pair_rates(radius, volume, count, mass, temperature)
     m, t = per_kind("mass", mass, radius), per_kind("temperature", temperature, radius)
@@ -116,8 +114,8 @@ def granular_temperature_ratio(
     Returns
     -------
     float
-        No unit. Half to one percent too far from 1, compared with simulations of the Boltzmann
-        equation.
+        No unit. Half to one percent too high in two cases that were simulated (Boltzmann equation,
+        e = 0.8 and 0.95, equal diameters, the first kind four and ten times as heavy).
 
     Raises
     ------
@@ -134,7 +132,7 @@ def granular_temperature_ratio(
     ...     granular_temperature_ratio([0.5, 0.5], 1000, [50, 50], mass=[1, 0.25], restitution=0.9),
     ...     4,
     ... )
-    1.16
+    1.1566
     """
     if np.shape(radius) != (2,):
         msg = f"radius must hold two numbers, one for each kind, not {radius!r}"
@@ -147,4 +145,6 @@ def granular_temperature_ratio(
         one, two = temperature_rates(radius, volume, count, mass, t, restitution) / t
         return float(two - one)
 
-    return math.exp(root(excess, high=20.0, low=-20.0))
+    one, two = per_kind("mass", mass, radius)
+    most = 20.0 + abs(math.log(one / two))  # far beyond: T_1/T_2 goes to m_1/m_2 at most
+    return math.exp(root(excess, high=most, low=-most))

@@ -108,8 +108,8 @@ def bmcsl_contact(radius: ArrayLike, volume: float, count: ArrayLike = 1.0) -> F
     Examples
     --------
     >>> bmcsl_contact([0.5, 0.25], volume=500, count=200).round(3)
-    array([[1.967, 1.73 ],
-           [1.73 , 1.617]])
+    array([[2.057, 1.79 ],
+           [1.79 , 1.663]])
     """
     zeta = moments(radius, volume, count)
     FLUID.check("packing_fraction", zeta[3])
@@ -168,8 +168,8 @@ def pair_rates(
     Examples
     --------
     >>> pair_rates([0.5, 0.25], 500, count=200, mass=[1, 0.125]).round(3)
-    array([[2.789, 4.139],
-           [4.139, 1.621]])
+    array([[5.834, 6.059],
+           [6.059, 3.336]])
     """
     contact = bmcsl_contact(radius, volume, count)
     r = np.asarray(radius, np.float64)

@@ -67,7 +67,7 @@ def rough_temperatures(
     --------
     >>> t, r = rough_temperatures(5.0, restitution=0.9, tangential=0.5)
     >>> round(t, 4), round(r, 4)
-    (0.3049, 0.1794)
+    (0.3049, 0.1793)
     """
     a, b, d = _rough(restitution, tangential, inertia)
     # The matrix [[-a, b], [b, -d]] 4/3 is symmetric: two exponentials along its own axes.
@@ -101,7 +101,7 @@ def rough_ratio(restitution: Numbers, tangential: Numbers, inertia: Numbers = 0.
     Returns
     -------
     float or float64 array
-        No unit. For e below 1 it is 2 to 7 percent lower than simulations.
+        No unit. For e below 1 it is 2 to 7 percent off simulations.
 
     Raises
     ------

@@ -197,7 +197,7 @@ def few_speed_pdf(speed: Numbers, n: int, energy: Numbers, mass: Numbers = 1.0) 
     Examples
     --------
     >>> round(few_speed_pdf(1.0, n=6, energy=7.5), 4)
-    0.5174
+    0.5248
     """
     n = _spheres(n)
     fastest = np.sqrt(2 * energy * (n - 1) / (n * mass))
@@ -234,7 +234,7 @@ def few_speed_cdf(speed: Numbers, n: int, energy: Numbers, mass: Numbers = 1.0) 
     Examples
     --------
     >>> round(few_speed_cdf(1.0, n=6, energy=7.5), 4)
-    0.1966
+    0.2086
     """
     n = _spheres(n)
     fastest = np.sqrt(2 * energy * (n - 1) / (n * mass))

@@ -130,7 +130,7 @@ def shear_viscosity(
     Examples
     --------
     >>> round(shear_viscosity(0.3), 4)
-    0.7314
+    0.7325
     """
     g = contact_value(packing_fraction, equation)
     y = 4 * packing_fraction * g
@@ -175,7 +175,7 @@ def bulk_viscosity(
     Examples
     --------
     >>> round(bulk_viscosity(0.3), 4)
-    0.6387
+    0.6431
     """
     g = contact_value(packing_fraction, equation)
     y = 4 * packing_fraction * g
@@ -221,7 +221,7 @@ def thermal_conductivity(
     Examples
     --------
     >>> round(thermal_conductivity(0.3), 3)
-    3.086
+    3.087
     """
     g = contact_value(packing_fraction, equation)
     y = 4 * packing_fraction * g

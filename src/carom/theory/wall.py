@@ -51,7 +51,7 @@ def wall_tension(radius: ArrayLike, volume: float) -> float:
     Examples
     --------
     >>> round(wall_tension([0.5] * 100, 500), 5)
-    -0.01892
+    -0.02418
     """
     zeta = moments(radius, volume)
     FLUID.check("packing_fraction", zeta[3])
@@ -94,7 +94,7 @@ def wall_pressure(radius: ArrayLike, volume: float, area: float, stretch: float)
     Examples
     --------
     >>> round(wall_pressure([0.5] * 100, 1000, area=600, stretch=0.4), 4)
-    0.1125
+    0.1198
     """
     given = moments(radius, volume)
 
