@@ -54,6 +54,16 @@ def test_tension_in_a_thin_gas_is_exact():
     assert wall_tension([0.5], 1 / n) == pytest.approx(-math.pi / 8 * n * n, rel=1e-3)
 
 
+@pytest.mark.parametrize("phi", [0.1, 0.3, 0.49])
+def test_tension_of_equal_spheres(phi):
+    # -(9/(2 pi)) phi^2 (1 + phi)/(1 - phi)^3 kT/sigma^2 of scaled-particle theory, as in
+    # M. Heni, H. Loewen, Phys. Rev. E 60, 7057 (1999).
+    radius = 0.4
+    tension = wall_tension([radius] * 3, 3 * 4 / 3 * math.pi * radius**3 / phi)
+    closed = -9 / (2 * math.pi) * phi**2 * (1 + phi) / (1 - phi) ** 3
+    assert tension == pytest.approx(closed / (2 * radius) ** 2, rel=1e-12)
+
+
 def test_pressure_on_walls():
     side, n = 20.0, 500
     # Spheres that are hardly there are an ideal gas.
@@ -99,7 +109,7 @@ def test_each_formula_is_public_and_in_the_documents_with_its_range_and_source(n
     known = theory.about(name)
     assert theory.about(function) is known
     assert name in theory.__all__
-    assert known.summary
+    assert re.fullmatch(r"\S.+\.", known.summary)
     row = next(line for line in TABLES.splitlines() if re.match(rf"\|.*`{name}`.*\|.*\|.*\|", line))
     row = re.sub("\u2212", "-", row)
     plain = inspect.getdoc(function)

@@ -227,6 +227,13 @@ def test_contact_values_give_the_pressure():
     assert bmcsl(radius, volume, count) == pytest.approx(z, rel=1e-12)
 
 
+def test_spheres_one_by_one():
+    """Without a count each radius is that of one sphere, of mass 1 at temperature 1."""
+    given = ([0.5, 0.3], 10)
+    assert (bmcsl_contact(*given) == bmcsl_contact(*given, [1, 1])).all()
+    assert (pair_rates(*given) == pair_rates(*given, [1, 1], mass=[1, 1], temperature=1)).all()
+
+
 def test_mixtures_of_equal_spheres_are_one_kind():
     phi, volume = 0.35, 100.0
     count = np.array([1, 2, 5]) * phi * volume / (8 * math.pi / 6)

@@ -95,6 +95,7 @@ def test_rods_in_equilibrium():
     few = v[:20]
     pairs = sum(max(abs(few[i]), abs(few[j])) for i in range(20) for j in range(i))
     assert rod_collision_rate(few, 30, radius=0.25) == pytest.approx(pairs / 20)
+    assert rod_force(4, 4.5) == 4 / 0.5
     assert rod_force([1, 2], 5.0, temperature=[1, 3], radius=[0, 0.5]) == pytest.approx([0.2, 2])
 
 

@@ -78,7 +78,9 @@ ROUGH = [
 @pytest.mark.parametrize(("e", "beta", "ratio", "start", "at_1", "at_5"), ROUGH)
 def test_rough_spheres(e, beta, ratio, start, at_1, at_5):
     """A numerical solution made elsewhere, which a simulation agrees with to a percent."""
-    t, r = rough_temperatures([1, 5, 400], e, beta, 1.0, start)
+    t, r = rough_temperatures([1, 5, 400], e, beta, rotation=start)
+    both = np.array(rough_temperatures([1, 5, 400], e, beta, 3.0, 3 * start))
+    assert both == pytest.approx(3 * np.array([t, r]), rel=1e-12)
     assert (t[0], r[0]) == pytest.approx(at_1, abs=1e-6)
     assert (t[1], r[1]) == pytest.approx(at_5, abs=1e-6)
     assert rough_ratio(e, beta) == pytest.approx(ratio, abs=1e-6)
@@ -92,6 +94,15 @@ def test_rough_and_elastic_spheres_keep_their_energy():
     assert t - r == pytest.approx(0.8 * np.exp(-0.5442 * c), rel=2e-4)
     # Of a shell, the same but faster: h (1 - h) with q = 2/3.
     assert rough_ratio(1, 1, inertia=2 / 3) == pytest.approx(1)
+
+
+def test_spin_may_outlast_motion():
+    """Without restitution spin is lost more slowly; what remains is the slowest of two modes."""
+    late = np.array(rough_temperatures([60, 61], 0, 1))
+    ratio = late[1] / late[0]
+    assert rough_ratio(0, 1) == pytest.approx(ratio[0], rel=1e-9)
+    assert ratio[0] > 1.5
+    assert rough_temperatures(0, 0.9, 0.5) == (1, 0)
 
 
 def test_smooth_spheres_never_turn():
@@ -138,6 +149,9 @@ def test_temperatures_of_one_kind_and_of_elastic_ones():
     rate = temperature_rates([0.5], volume, count, mass=2, temperature=3, restitution=0.9)
     omega = collision_rate(phi, 3, 2, equation=lambda x: 1 + 4 * x * (1 - x / 2) / (1 - x) ** 3)
     assert rate == pytest.approx([-3 * omega * (1 - 0.81) / 3], rel=1e-10)
+    assert temperature_rates([0.5], 99, restitution=0.9) == pytest.approx(
+        temperature_rates([0.5], 99, 1, 1, 1, 0.9), rel=1e-15
+    )
     # Elastic kinds keep the energy they share, and hold still at one temperature.
     kinds = ([0.5, 0.2], 80.0, [10, 40], [1, 0.3])
     gain = temperature_rates(*kinds, temperature=[1, 2])
@@ -162,10 +176,15 @@ def test_temperatures_of_one_kind_and_of_elastic_ones():
         (lambda: rough_ratio(0.9, -1), "tangential is -1; smooth spheres never turn"),
         (lambda: granular_temperature_ratio([0.5] * 3, 100, 1, 1, 0.9), "radius must hold two"),
         (
-            lambda: granular_temperature_ratio([0.5] * 2, 100, 20, 1, 0.9),
+            lambda: granular_temperature_ratio([0.5] * 2, 100, 11, 1, 0.9),
             r"above 0\.1 it was not compared",
         ),
         (lambda: granular_temperature_ratio([0.5] * 2, 100, 1, 1, 0.7), "not Gaussian enough"),
+        (lambda: rough_temperatures(1, 1.1, 0), r"restitution is 1\.1"),
+        (lambda: rough_ratio(1.1, 0), r"restitution is 1\.1"),
+        (lambda: rough_ratio(1, 1.1), r"tangential is 1\.1"),
+        (lambda: temperature_rates([0.5], 99, restitution=1.1), r"restitution is 1\.1"),
+        (lambda: granular_temperature_ratio([0.5] * 2, 100, 1, 1, 1.1), r"restitution is 1\.1"),
         (lambda: temperature_rates([0.5] * 2, 99, restitution=[1, 1]), "restitution must be"),
     ],
 )
@@ -181,3 +200,5 @@ def test_how_far_the_ratio_can_be_stretched():
     for mass in (1e3, 1e20):
         hot = granular_temperature_ratio([0.5] * 2, 1000, 1, [mass, 1], 0, extrapolate=True)
         assert hot == pytest.approx(mass, rel=1e-6)
+    hot = granular_temperature_ratio([0.5] * 2, 1000, 1, [1e15, 1e-15], 0, extrapolate=True)
+    assert hot == pytest.approx(1e30, rel=1e-6)

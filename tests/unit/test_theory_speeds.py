@@ -52,6 +52,7 @@ def test_shares_of_maxwell():
     assert maxwell_speed_cdf(at) == pytest.approx([0.5, 0.95], abs=1e-6)
     assert maxwell_speed_cdf(2 * at, temperature=8, mass=2) == pytest.approx([0.5, 0.95], abs=1e-6)
     assert maxwell_component_cdf(2.0, temperature=8, mass=2) == pytest.approx(0.841345, abs=1e-6)
+    assert maxwell_component_pdf(0.0) == pytest.approx(1 / math.sqrt(2 * math.pi))
     assert maxwell_speed_cdf(0) == 0
     assert maxwell_speed_cdf(1e3) == 1
 

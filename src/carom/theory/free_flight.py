@@ -176,7 +176,7 @@ def free_path_cdf(path: Numbers, mean: Numbers = 1.0) -> Numbers:
 @cache
 def _after_a_collision() -> tuple[Floats, Floats, Floats]:
     """Speeds in sqrt(2 kT/m), how often each follows a collision, and omega(v)/omega."""
-    x, weight = gauss(NODES, 0.0, FASTEST)
+    x, weight = gauss(NODES, FASTEST)
     rate = relative_rate(x)
     return x, weight * 4 / math.sqrt(math.pi) * x * x * np.exp(-x * x) * rate, rate
 

@@ -16,11 +16,10 @@ def erf(x: Floats) -> Floats:
     return np.asarray(_erf(x), np.float64)
 
 
-def gauss(nodes: int, low: float, high: float) -> tuple[Floats, Floats]:
-    """Nodes and weights of Gauss and Legendre's quadrature between two numbers."""
+def gauss(nodes: int, high: float) -> tuple[Floats, Floats]:
+    """Nodes and weights of Gauss and Legendre's quadrature from 0 to `high`."""
     x, weight = np.polynomial.legendre.leggauss(nodes)
-    half = (high - low) / 2
-    return low + half * (x + 1), half * weight
+    return high / 2 * (x + 1), high / 2 * weight
 
 
 def root(rising: Callable[[float], float], high: float, low: float = 0.0) -> float:

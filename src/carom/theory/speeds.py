@@ -246,7 +246,7 @@ def few_speed_cdf(speed: Numbers, n: int, energy: Numbers, mass: Numbers = 1.0) 
 def _angles(end: Floats, n: int) -> Floats:
     """Integral of v^2 (1 - v^2)^((3n-8)/2) dv with v = sin(a), from 0 to each end of a."""
     total = np.zeros(end.shape)
-    for x, weight in zip(*gauss(NODES, 0.0, 1.0), strict=True):
+    for x, weight in zip(*gauss(NODES, 1.0), strict=True):
         angle = end * x
         total += weight * np.sin(angle) ** 2 * np.cos(angle) ** (3 * n - 7)
     return total * end
