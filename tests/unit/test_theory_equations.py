@@ -159,6 +159,7 @@ def test_how_far_each_can_be_stretched():
         (lambda: contact_value(0.6), "freeze"),
         (lambda: contact_value("0.3"), "must be a number or an array of numbers, not '0.3'"),
         (lambda: contact_value([0.1, None]), "must be a number or an array of numbers"),
+        (lambda: contact_value(None), "must be a number or an array of numbers, not None"),
         (lambda: contact_value(True), "must be a number or an array of numbers, not True"),
         (lambda: bmcsl([0.5], 10, count=[1, 2]), r"count has the shape \(2,\)"),
         (lambda: bmcsl([0.5, 0.3], 10, count=[1, 0]), r"count\[1\] is 0; it must be above 0"),

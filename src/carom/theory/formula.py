@@ -189,7 +189,7 @@ def formulas() -> list[str]:
 def _floats(name: str, value: Any) -> Floats:
     try:
         given = np.asarray(value)
-        if given.dtype.kind not in "iuf" and not (given.dtype.kind == "O" and given.ndim == 0):
+        if given.dtype.kind not in "iuf":
             raise TypeError
         x = np.asarray(given, np.float64)
     except (TypeError, ValueError, OverflowError) as error:
