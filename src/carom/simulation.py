@@ -11,9 +11,10 @@ import numpy as np
 
 from carom.checks import number
 from carom.errors import InputError
+from carom.kept import Surroundings
 from carom.listing import Listing
 from carom.methods import TICKS_PER_SECOND, Method, engine_maker
-from carom.motion import Motion, Saved, Surroundings
+from carom.motion import Motion, Saved
 from carom.rules import Smooth
 from carom.running import Running, count
 from carom.scene import Scene, Spheres

@@ -5,11 +5,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from carom import mechanics, theory
+from carom import theory
 from carom.errors import InputError
 from carom.observe.batch import Batch, Moment
 from carom.observe.estimate import Estimate
-from carom.observe.kinds import Kinds, conserves_energy, is_periodic
+from carom.observe.fluid import UP_TO, Fluid, fluid_of
 from carom.observe.observable import Observable
 from carom.observe.series import Rates, poisson
 from carom.observe.table import Table, Theory
@@ -17,7 +17,7 @@ from carom.state import Floats
 
 BINS, MEANS = 50, 8.0  #: the distribution goes up to eight means, in fifty bins
 EACH, FEWEST = 16, 64  #: each sixteenth sphere is followed, but 64 at least
-ENSKOG = f"Maxwell's gas of independent flights, up to packing fraction {theory.FREEZING}"
+ENSKOG = f"independent flights in Maxwell's gas, {UP_TO}"
 
 
 class FreeTime(Observable):
@@ -26,18 +26,8 @@ class FreeTime(Observable):
     The flights of every sixteenth sphere (of 64 at least) are followed by the records of
     events: all of them would slow a run down by a third. Of long ones fewer begin and end
     within the run: the density allows for that. Its errors are those of independent flights.
-    Theory, for one kind of spheres in a periodic box: a sphere of speed v meets others at the
-    rate omega(v), so ::
-
-        p(t) = < omega(v)^2 exp(-omega(v) t) > / <omega(v)>
-
-    over Maxwell's speeds, with omega(v) of a dilute gas times the contact value. Result:
-    `Table`; `mean` is an `Estimate`.
-
-    References
-    ----------
-    S. Chapman, T. G. Cowling, The Mathematical Theory of Non-Uniform Gases, 3rd ed., Cambridge
-    1970, section 5.4.
+    Theory, for one kind of spheres in a periodic box: `carom.theory.free_time_cdf`, its mean
+    `carom.theory.mean_free_time`. Result: `Table`; `mean` is an `Estimate`.
     """
 
     _unit = "time"
@@ -60,7 +50,7 @@ class FreeTime(Observable):
         self._width = math.nan
         self._ends = Rates()  # ends of flights
         self._gone = Rates()  # what flights that ended came to
-        self._enskog = Flights.of(moment)
+        self._fluid, self._said = fluid_of(moment)
 
     def events(self, batch: Batch) -> None:
         """End two flights at each collision, one at each hit of a wall."""
@@ -127,8 +117,13 @@ class FreeTime(Observable):
         return Estimate(value, value * rate.error / rate.value, rate.n_independent, rate.note)
 
     def theory(self) -> Theory | None:
-        """The mean free time of kinetic theory, 1/omega."""
-        return None if self._enskog is None else Theory(1 / self._enskog.rate, ENSKOG)
+        """The mean of kinetic theory."""
+        if self._fluid is None:
+            return Theory(math.nan, self._said) if self._said else None
+        return Theory(self._mean(self._fluid), ENSKOG)
+
+    def _mean(self, fluid: Fluid) -> float:
+        return float(theory.mean_free_time(*fluid))
 
     def result(self) -> Table:
         """The distribution so far."""
@@ -136,15 +131,17 @@ class FreeTime(Observable):
         if self._counts is None:
             msg = f"{self.name} has seen no sphere collide twice in {self.duration:.6g}; run longer"
             raise InputError(msg)
-        edges = self._width * np.arange(BINS + 1)
+        edges = self._width * np.arange(BINS + 1, dtype=np.float64)
         x = (edges[1:] + edges[:-1]) / 2
         # Of flights of length x there is room for T - x within the time T.
         room = np.maximum(1 - self._as_time(x) / self.duration, 0)
         with np.errstate(divide="ignore", invalid="ignore"):
             per = 1 / (float(self._ends.total[1]) * self._width * room)
             density, error = self._counts[:-1] * per, poisson(self._counts[:-1]) * per
-        line = np.full(BINS, math.nan) if self._enskog is None else self._line(self._enskog, x)
-        said = "" if expected is None else f", theory {expected.value:.6g}"
+        line, said = np.full(BINS, math.nan), ""
+        if self._fluid is not None:
+            line = np.diff(self._below(edges, self._mean(self._fluid))) / self._width
+            said = f", theory {self._mean(self._fluid):.6g}"
         return Table(
             f"{self.name}: mean {mean}{said}",
             {
@@ -154,22 +151,24 @@ class FreeTime(Observable):
                 "density_theory": line,
             },
             {self._unit: self._unit, "density": f"1/{self._unit}"},
-            "" if expected is None else ENSKOG,
+            "" if expected is None else expected.label,
             (mean.note,) if mean.note else (),
         )
 
     def _as_time(self, x: Floats) -> Floats:
         return x
 
-    def _line(self, enskog: "Flights", x: Floats) -> Floats:
-        return enskog.times(x)
+    def _below(self, x: Floats, mean: float) -> Floats:
+        """How many flights are shorter."""
+        below: Floats = theory.free_time_cdf(x, 1 / mean)
+        return below
 
 
 class FreePath(FreeTime):
     """Distribution of the distance that a sphere goes between two events.
 
-    Speeds follow from the start and the impulses. Theory: p(l) = < (omega(v)^2/v)
-    exp(-omega(v) l/v) > / <omega(v)>, with the mean <v>/<omega>. Otherwise as `FreeTime`.
+    Speeds follow from the start and the impulses. Theory: `carom.theory.free_path_cdf`, its mean
+    `carom.theory.mean_free_path`. Otherwise as `FreeTime`.
     """
 
     _unit = "length"
@@ -212,63 +211,13 @@ class FreePath(FreeTime):
         flown = (self.last().time - self._since) * self._speed
         return float(flown[self._followed].sum())
 
-    def theory(self) -> Theory | None:
-        """The mean free path of kinetic theory, <v>/omega."""
-        if self._enskog is None:
-            return None
-        return Theory(self._enskog.mean_speed / self._enskog.rate, ENSKOG)
+    def _mean(self, fluid: Fluid) -> float:
+        return float(theory.mean_free_path(fluid.packing_fraction, fluid.radius))
 
     def _as_time(self, x: Floats) -> Floats:
         mean_speed = float(self._gone.total[1] + self._under_way()) / self.duration
         return x * (np.count_nonzero(self._followed) / mean_speed)
 
-    def _line(self, enskog: "Flights", x: Floats) -> Floats:
-        return enskog.paths(x)
-
-
-class Flights:
-    """Free flights in Maxwell's gas of one kind, by kinetic theory.
-
-    Parameters
-    ----------
-    rate : float
-        Of collisions of a sphere.
-    thermal : float
-        sqrt(2 kT/m).
-    """
-
-    def __init__(self, rate: float, thermal: float) -> None:
-        self.rate, self.mean_speed = rate, 2 / math.sqrt(math.pi) * thermal
-        x = (np.arange(2000) + 0.5) * (6 / 2000)  # speeds over the thermal one
-        self._share = 4 / math.sqrt(math.pi) * x * x * np.exp(-x * x) * (6 / 2000)
-        erf = np.array([math.sqrt(math.pi) / 2 * math.erf(s) for s in x])
-        bare = np.exp(-x * x) + (2 * x + 1 / x) * erf
-        self._rates = rate * bare / float(bare @ self._share)
-        self._speeds = thermal * x
-
-    @classmethod
-    def of(cls, moment: Moment) -> "Flights | None":
-        """Those of a fluid; None where theory does not speak."""
-        state, world = moment.state, moment.world
-        kinds, kT = Kinds(state), mechanics.temperature(state, world)
-        fluid = is_periodic(world) and conserves_energy(world) and world.collide
-        if not (fluid and len(kinds) == 1 and not state.fixed.any() and kT > 0):
-            return None
-        if mechanics.packing_fraction(state, world) > theory.FREEZING:
-            return None
-        rate = float(kinds.rates(mechanics.volume(world), kT)[0, 0])
-        return cls(rate, math.sqrt(2 * kT / kinds.mass[0]))
-
-    def times(self, t: Floats) -> Floats:
-        """Density of free times."""
-        rates = self._rates
-        weight = self._share * rates**2 / self.rate
-        result: Floats = np.exp(-np.outer(t, rates)) @ weight
-        return result
-
-    def paths(self, length: Floats) -> Floats:
-        """Density of free paths."""
-        per = self._rates / self._speeds
-        weight = self._share * self._rates * per / self.rate
-        result: Floats = np.exp(-np.outer(length, per)) @ weight
-        return result
+    def _below(self, x: Floats, mean: float) -> Floats:
+        below: Floats = theory.free_path_cdf(x, mean)
+        return below

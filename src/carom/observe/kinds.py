@@ -1,16 +1,17 @@
-"""Kinds of spheres, and how often they should meet."""
+"""Kinds of spheres, and what kind of world they are in."""
 
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from carom import mechanics
+from carom import mechanics, theory
 from carom.errors import InputError
 from carom.state import Floats, State
 from carom.world import World
 
 MOST_KINDS = 16  #: more are a continuous distribution, of which pairs say nothing
+DENSEST = 0.49  #: packing fraction for which `mean_free_time` asks theory, just below freezing
 
 
 class Kinds:
@@ -55,34 +56,19 @@ class Kinds:
             raise InputError(msg)
         return kinds
 
-    def rates(self, volume: float, temperature: float) -> Floats:
-        """Collisions of one sphere of kind a with those of kind b per unit time, (K, K) float64.
-
-        nu_ab = n_b sigma_ab^2 chi_ab sqrt(8 pi kT/mu_ab), with the contact values chi_ab of
-        BMCSL (see `carom.theory.bmcsl`).
-        """
-        sigma, n = 2 * self.radius, self.count / volume
-        two, three = (math.pi / 6 * float(n @ sigma**k) for k in (2, 3))
-        u = 1 - three
-        both = (sigma[:, None] + sigma) / 2
-        d = sigma[:, None] * sigma / (2 * both) * two
-        chi = 1 / u + 3 * d / u**2 + 2 * d**2 / u**3
-        mu = 1 / (1 / self.mass[:, None] + 1 / self.mass)
-        result: Floats = n * both**2 * chi * np.sqrt(8 * math.pi * temperature / mu)
-        return result
-
 
 def mean_free_time(state: State, world: World) -> float:
     """Roughly how long a sphere flies between two collisions: a scale to choose times by.
 
-    By kinetic theory where there is a gas in a closed volume; else the time in which a sphere
-    moves by its own radius.
+    By kinetic theory where there is a gas in a closed volume, or as if it were no denser than a
+    fluid can be; else the time in which a sphere moves by its own radius.
     """
     volume, temperature = mechanics.volume(world), mechanics.temperature(state, world)
     kinds = Kinds(state)
     if world.collide and volume > 0 and temperature > 0 and 0 < len(kinds) <= MOST_KINDS:
-        rates = kinds.rates(volume, temperature).sum(axis=1)
-        mean = float(rates @ kinds.count / kinds.count.sum())
+        volume = max(volume, 4 / 3 * math.pi * float(kinds.count @ kinds.radius**3) / DENSEST)
+        each = theory.pair_rates(kinds.radius, volume, kinds.count, kinds.mass, temperature)
+        mean = float(each.sum(axis=1) @ kinds.count / kinds.count.sum())
         if 0 < mean < math.inf:
             return 1 / mean
     return mechanics.crossing_time(state, world)
@@ -93,10 +79,14 @@ def is_periodic(world: World) -> bool:
     return bool((world.period > 0).all()) and len(world.walls) == 0
 
 
+def is_elastic(world: World) -> bool:
+    """Whether no collision takes energy."""
+    return world.restitution == 1 and bool((world.walls["restitution"] == 1).all())
+
+
 def conserves_energy(world: World) -> bool:
     """Whether the kinetic energy can never change."""
-    elastic = world.restitution == 1 and bool((world.walls["restitution"] == 1).all())
-    return elastic and not world.gravity.any()
+    return is_elastic(world) and not world.gravity.any()
 
 
 def labels(kinds: Kinds) -> NDArray[np.str_]:

@@ -9,17 +9,14 @@ from carom import mechanics, theory
 from carom.errors import InputError
 from carom.observe.batch import Moment
 from carom.observe.estimate import Estimate
-from carom.observe.flights import Flights
+from carom.observe.fluid import UP_TO, Fluid, fluid_of
 from carom.observe.kinds import mean_free_time, one_kind, refuse_losses, refuse_walls, unmoved
 from carom.observe.observable import Observable, Schedule, log_times, once
 from carom.observe.table import Table, Theory
-from carom.state import Floats, State
+from carom.state import Floats
 
 ENOUGH = 16  #: windows whose own spread gives the error
-MEMORY = f"Enskog, velocities that forget at the rate 2 omega/3; up to {theory.FREEZING}"
-
-#: 2.837297: of the lattice sum of periodic images of a point force.
-IMAGES = 2.837297
+MEMORY = f"Enskog, velocities that forget at the rate 2 omega/3, {UP_TO}"
 
 
 class Lagged(Observable):
@@ -55,7 +52,7 @@ class Lagged(Observable):
         n = len(self.schedule.at)
         self._count = np.zeros(n, np.int64)  # windows
         self._sum, self._squares, self._spheres = np.zeros(n), np.zeros(n), np.zeros(n)
-        self._enskog = Flights.of(moment)
+        self._fluid, self._said = fluid_of(moment)
         self._kT = mechanics.temperature(state, world)
         self._open(moment)
 
@@ -102,7 +99,9 @@ class Lagged(Observable):
         means = self._means()
         assert self.schedule is not None
         time = np.array(self.schedule.at[: len(means)])
-        expected = np.full(len(time), math.nan) if self._enskog is None else line(time)
+        expected = np.full(len(time), math.nan)
+        if self._fluid is not None:
+            expected = line(self._fluid, time)
         return Table(
             title,
             {
@@ -112,13 +111,13 @@ class Lagged(Observable):
                 f"{column}_theory": expected,
             },
             {"time": "time", **({column: unit} if unit else {})},
-            "" if self._enskog is None else MEMORY,
+            self._said if self._fluid is None else MEMORY,
         )
 
-    def _forgetting(self) -> float:
-        """2 omega/3 of kinetic theory."""
-        assert self._enskog is not None
-        return 2 / 3 * self._enskog.rate
+
+def forgetting(fluid: Fluid) -> float:
+    """2 omega/3: the rate at which velocities forget in kinetic theory."""
+    return float(2 / 3 * theory.collision_rate(*fluid))
 
 
 def places(moment: Moment, free: Any) -> Floats:
@@ -163,13 +162,12 @@ class MSD(Lagged):
         """Lags that were reached so far."""
         return self._table("Mean square displacement", "msd", "length^2", self._line)
 
-    def _line(self, t: Floats) -> Floats:
-        assert self._enskog is not None
-        tau = 1 / self._forgetting()
+    def _line(self, fluid: Fluid, t: Floats) -> Floats:
+        tau = 1 / forgetting(fluid)
         # About their centre of mass N spheres have 3 N - 3 degrees of freedom.
         freedom = 1 - 1 / np.count_nonzero(self._free)
-        kT_over_m = math.pi / 8 * self._enskog.mean_speed**2 * freedom
-        line: Floats = 6 * kT_over_m * tau * (t - tau * (1 - np.exp(-t / tau)))
+        square = freedom * fluid.temperature / fluid.mass
+        line: Floats = 6 * square * tau * (t - tau * (1 - np.exp(-t / tau)))
         return line
 
 
@@ -207,8 +205,8 @@ class VACF(Lagged):
         """Lags that were reached so far."""
         return self._table("Velocity autocorrelation", "vacf", "", self._line)
 
-    def _line(self, t: Floats) -> Floats:
-        line: Floats = np.exp(-self._forgetting() * t)
+    def _line(self, fluid: Fluid, t: Floats) -> Floats:
+        line: Floats = np.exp(-forgetting(fluid) * t)
         return line
 
 
@@ -216,12 +214,10 @@ class Diffusion(MSD):
     """Self-diffusion coefficient of one kind of spheres in a periodic cube.
 
     From the rise of the mean square displacement between two lags, D = d<r^2>/6 dt. Spheres
-    drag their own periodic images along, so ::
-
-        D(infinity) = D(L) + 2.837297 kT/(6 pi eta L)
-
-    with the shear viscosity eta; Enskog's if it is not given, which is a tenth or two off in a
-    dense fluid. That error is not in the error bar. Result: `Table` with both values.
+    drag their own periodic images along; `carom.theory.finite_size_diffusion` allows for that,
+    with the shear viscosity, Enskog's if it is not given, which is a tenth or two off in a
+    dense fluid. That error is not in the error bar. Theory: `carom.theory.self_diffusion`.
+    Result: `Table` with both values; only that of this box where no viscosity is known.
 
     Parameters
     ----------
@@ -229,10 +225,6 @@ class Diffusion(MSD):
         The two lags; 40 and 200 mean free times if left out.
     viscosity : float, optional
         A measured one.
-
-    References
-    ----------
-    I.-C. Yeh, G. Hummer, J. Phys. Chem. B 108, 15873 (2004), doi:10.1021/jp0477147.
     """
 
     def __init__(
@@ -260,12 +252,6 @@ class Diffusion(MSD):
             raise InputError(msg)
         one_kind(state, self.name)
         super().begin(moment)
-        if self._enskog is None and self._viscosity is None:
-            msg = (
-                f"{self.name} takes Enskog's viscosity for its size correction, which ends at "
-                f"packing fraction {theory.FREEZING}; give viscosity="
-            )
-            raise InputError(msg)
 
     def _look(self, moment: Moment, place: int) -> Floats:
         squares = super()._look(moment, place)
@@ -286,33 +272,20 @@ class Diffusion(MSD):
                 f"{self.duration:.6g}; run longer, or give between="
             )
             raise InputError(msg)
-        here = means[1]
-        state, side = self.last(), float(self.world.period[0]) if self.world else math.nan
-        eta = self._viscosity
-        if eta is None:
-            eta = enskog_viscosity(state, side, self._kT)
-        shift = IMAGES * self._kT / (6 * math.pi * eta * side)
-        beyond = Estimate(here.value + shift, here.error, here.n_independent)
-        expected = None
-        if self._enskog is not None:
-            kT_over_m = math.pi / 8 * self._enskog.mean_speed**2
-            value = 1.018954 * kT_over_m / self._forgetting()
-            expected = Theory(value, f"Enskog, up to packing fraction {theory.FREEZING}")
-        rows = {f"D in a cube of {side:.6g}": (here, None), "D, infinite": (beyond, expected)}
+        side = float(self.world.period[0]) if self.world else math.nan
+        rows: dict[str, tuple[Estimate, Theory | None]] = {
+            f"D in a cube of {side:.6g}": (means[1], None)
+        }
+        note = f"no size correction without viscosity=; theory is {self._said}"
+        eta, expected = self._viscosity, None
+        if self._fluid is not None:
+            eta = eta or float(theory.shear_viscosity(*self._fluid))
+            expected = Theory(float(theory.self_diffusion(*self._fluid)), f"Enskog, {UP_TO}")
+        if eta is not None:
+            shift = float(theory.finite_size_diffusion(side, eta, self._kT))
+            beyond = Estimate(means[1].value + shift, means[1].error, means[1].n_independent)
+            rows["D, infinite"] = (beyond, expected)
+            note = f"size correction {shift:.4g} with viscosity {eta:.4g}"
         table = Table.of_estimates("Diffusion", rows)
-        note = f"size correction {shift:.4g} with viscosity {eta:.4g}"
-        return Table(table.title, table.columns, {"value": "length^2/time"}, table.theory, (note,))
-
-
-def enskog_viscosity(state: State, side: float, kT: float) -> float:
-    """Shear viscosity of the fluid of one kind in a cube, by Enskog.
-
-    eta = 5 sqrt(m kT)/(16 sqrt(pi) sigma^2 chi) [1.016034 (1 + 0.4 y)^2 + 48 y^2/(25 pi)],
-    y = Z - 1 = (2 pi/3) n sigma^3 chi: S. Chapman, T. G. Cowling, chapter 16.
-    """
-    sigma, mass, n = 2 * float(state.radius[0]), float(state.mass[0]), len(state)
-    z = theory.carnahan_starling(math.pi / 6 * n * sigma**3 / side**3)
-    chi = (z - 1) / (2 * math.pi / 3 * n * sigma**3 / side**3)
-    bare = 5 * math.sqrt(mass * kT) / (16 * math.sqrt(math.pi) * sigma**2 * chi)
-    y = z - 1
-    return bare * (1.016034 * (1 + 0.4 * y) ** 2 + 48 * y**2 / (25 * math.pi))
+        said = table.theory or self._said
+        return Table(table.title, table.columns, {"value": "length^2/time"}, said, (note,))

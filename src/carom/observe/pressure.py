@@ -8,6 +8,7 @@ from carom import mechanics, theory
 from carom.errors import InputError
 from carom.observe.batch import Batch, Moment
 from carom.observe.estimate import Estimate
+from carom.observe.fluid import FREEZES, UP_TO, in_range
 from carom.observe.kinds import (
     conserves_energy,
     mean_free_time,
@@ -16,27 +17,28 @@ from carom.observe.kinds import (
     unmoved,
 )
 from carom.observe.observable import Observable, every
-from carom.observe.room import reduced_pressure, room_for, wall_impulses
+from carom.observe.room import is_still_gas, reduced_pressure, room_for, wall_impulses
 from carom.observe.series import Rates, Series
 from carom.observe.table import Table, Theory
 from carom.state import Floats, State
+from carom.world import World
 
 AXES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+WALLED = f"a fluid between walls, theory.wall_pressure, {UP_TO}"
 WALLS = "use WallPressure where there are walls; open space has no pressure"
 
 
-def _fluid_z(state: State, volume: float) -> Theory | None:
-    """The compressibility factor of the fluid; None where it freezes."""
-    radius = state.radius
-    try:
-        if (radius == radius[0]).all():
-            phi = 4 / 3 * math.pi * float(np.sum(radius**3)) / volume
-            z, name = theory.carnahan_starling(phi), "Carnahan and Starling"
-        else:
-            z, name = theory.bmcsl(radius, volume), "BMCSL"
-    except InputError:
-        return None
-    return Theory(z, f"{name}, a fluid up to packing fraction {theory.FREEZING}")
+def _fluid_z(state: State, world: World) -> Theory:
+    """The compressibility factor of the fluid; nan where it freezes."""
+    if not world.collide:
+        return Theory(1.0, "ideal gas")
+    if np.ptp(state.radius) == 0:
+        phi = mechanics.packing_fraction(state, world)
+        z = in_range(theory.kolafa_labik_malijevsky, phi)
+        name = "Kolafa, Labik and Malijevsky"
+    else:
+        z, name = in_range(theory.bmcsl, state.radius, mechanics.volume(world)), "BMCSL"
+    return Theory(math.nan, FREEZES) if z is None else Theory(z, f"{name}, a fluid {UP_TO}")
 
 
 class Compressibility(Observable):
@@ -65,8 +67,7 @@ class Compressibility(Observable):
         self._sigma = None if np.ptp(state.radius) == 0 else 2 * state.radius
         self._single = 2 * float(state.radius[0])
         self._rates = Rates()
-        fluid = _fluid_z(state, mechanics.volume(world))
-        self._theory = fluid if world.collide else Theory(1.0, "ideal gas")
+        self._theory = _fluid_z(state, world)
 
     def events(self, batch: Batch) -> None:
         """Add sigma |J| of each collision."""
@@ -86,7 +87,7 @@ class Compressibility(Observable):
         )
 
     def theory(self) -> Theory | None:
-        """Z of the fluid: Carnahan and Starling, or BMCSL for several sizes."""
+        """Z of the fluid: Kolafa, Labik and Malijevsky, or BMCSL for several sizes."""
         return self._theory if self.seen is not None else None
 
 
@@ -127,12 +128,11 @@ class PressureTensor(Observable):
         self._series = Series(7)
         self._sum = np.zeros(6)
         self._since = moment.time
-        self._theory = None
-        z = _fluid_z(state, self._volume) if conserves_energy(world) else None
-        if z is not None:
+        self._theory: Theory | None = None
+        if conserves_energy(world):
+            z = _fluid_z(state, world)
             ideal = len(state) * mechanics.temperature(state, world) / self._volume
-            factor = z.value if world.collide else 1.0
-            self._theory = Theory(factor * ideal, z.label if world.collide else "ideal gas")
+            self._theory = Theory(z.value * ideal, z.label)
 
     def events(self, batch: Batch) -> None:
         """Add sigma n_a J_b of each collision, n = J/|J|."""
@@ -192,9 +192,11 @@ class WallPressure(Observable):
             raise InputError(msg)
         self._areas: Floats = room.areas
         self._rates = Rates(len(room.areas))
-        kT = mechanics.temperature(state, world)
-        reduced = reduced_pressure(world, state, room)
-        self._theory = math.nan if reduced is None else reduced * kT
+        self._theory = Theory(math.nan, "")
+        if is_still_gas(world, state, room):
+            reduced = reduced_pressure(world, state, room)
+            value = math.nan if reduced is None else reduced * mechanics.temperature(state, world)
+            self._theory = Theory(value, FREEZES if reduced is None else WALLED)
 
     def events(self, batch: Batch) -> None:
         """Add |J_n| of each hit of a wall."""
@@ -211,9 +213,9 @@ class WallPressure(Observable):
                 "wall": np.arange(len(found)),
                 "pressure": np.array([e.value for e in found]) / self._areas,
                 "pressure_error": np.array([e.error for e in found]) / self._areas,
-                "pressure_theory": np.full(len(found), self._theory),
+                "pressure_theory": np.full(len(found), self._theory.value),
             },
             {"pressure": "energy/length^3"},
-            "" if math.isnan(self._theory) else "a fluid between walls, carom.theory.wall_pressure",
+            self._theory.label,
             tuple(dict.fromkeys(e.note for e in found if e.note)),
         )

@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 from carom import mechanics, theory
 from carom.errors import InputError
 from carom.observe.batch import Batch, Moment
-from carom.observe.kinds import Kinds, conserves_energy, is_periodic, labels
+from carom.observe.fluid import FREEZES, UP_TO, fluid_of, in_range, is_gas
+from carom.observe.kinds import Kinds, labels
 from carom.observe.observable import Observable
 from carom.observe.series import Rates
 from carom.observe.table import Table
-
-ENSKOG = f"Enskog with contact values of BMCSL, up to packing fraction {theory.FREEZING}"
+from carom.state import Floats
 
 
 class CollisionRate(Observable):
@@ -24,12 +24,13 @@ class CollisionRate(Observable):
 
         nu_ab = n_b sigma_ab^2 chi_ab sqrt(8 pi kT/mu_ab)
 
-    with the contact values chi of BMCSL. Result: `Table`, a row for each ordered pair of kinds.
+    as in `carom.theory.pair_rates`; of one kind it is `carom.theory.collision_rate`, with a better
+    contact value chi. Result: `Table`, a row for each ordered pair of kinds.
 
     References
     ----------
     S. Chapman, T. G. Cowling, The Mathematical Theory of Non-Uniform Gases, 3rd ed., Cambridge
-    1970, chapters 5 and 16; chi as in `carom.theory.bmcsl`.
+    1970, chapters 5 and 16.
     """
 
     def begin(self, moment: Moment) -> None:
@@ -47,11 +48,24 @@ class CollisionRate(Observable):
         self._column = np.full((len(kinds) + 1, len(kinds) + 1), -1)
         self._column[low, high] = self._column[high, low] = np.arange(len(low))
         self._rates = Rates(len(low))
-        self._theory = np.full((len(kinds), len(kinds)), math.nan)
+        self._theory, self._said = self._expected(moment)
+
+    def _expected(self, moment: Moment) -> tuple[Floats, str]:
+        """Rates by theory, and whose they are."""
+        state, world, kinds = moment.state, moment.world, self._kinds
+        nothing = np.full((len(kinds), len(kinds)), math.nan)
+        if not is_gas(state, world):
+            return nothing, ""
+        fluid, _ = fluid_of(moment)
+        if fluid is not None:
+            rate = theory.collision_rate(*fluid)
+            name = "Kolafa, Labik and Malijevsky"
+            return np.full((1, 1), rate), f"Enskog, contact value of {name}, {UP_TO}"
         volume, kT = mechanics.volume(world), mechanics.temperature(state, world)
-        gas = is_periodic(world) and kT > 0 and not state.fixed.any() and conserves_energy(world)
-        if gas and mechanics.packing_fraction(state, world) <= theory.FREEZING:
-            self._theory = kinds.rates(volume, kT)
+        rates = in_range(theory.pair_rates, kinds.radius, volume, kinds.count, kinds.mass, kT)
+        if rates is None:
+            return nothing, FREEZES
+        return rates, f"Enskog, contact values of BMCSL, {UP_TO}"
 
     def events(self, batch: Batch) -> None:
         """Count."""
@@ -80,7 +94,7 @@ class CollisionRate(Observable):
                 "rate_theory": self._theory[a, b],
             },
             {"rate": "1/time"},
-            "" if np.isnan(self._theory).all() else ENSKOG,
+            self._said,
             tuple(dict.fromkeys(e.note for e in found if e.note)),
         )
 

@@ -23,7 +23,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.errors import InputError
+from carom.observe.fluid import in_range
+from carom.observe.kinds import conserves_energy
 from carom.state import CAME_TO_REST, WOKE, Floats, State
 from carom.theory import wall_pressure
 from carom.world import CYLINDER, PLANE, SPHERE, World
@@ -50,21 +51,19 @@ class Room:
     stretch: float
 
 
+def is_still_gas(world: World, state: State, room: Room) -> bool:
+    """Whether the spheres are a gas in equilibrium between walls of known area."""
+    closed = room.volume > 0 and math.fsum(room.areas) > 0  # not where one is nan
+    return closed and conserves_energy(world) and len(state) >= FEWEST and not state.fixed.any()
+
+
 def reduced_pressure(world: World, state: State, room: Room) -> float | None:
-    """P/kT on the walls, or None where the spheres are no gas in equilibrium."""
-    radius = state.radius[~state.fixed]
-    elastic = world.restitution == 1 and (world.walls["restitution"] == 1).all()
-    closed = len(room.areas) > 0 and math.isfinite(room.volume) and room.volume > 0
-    gas = len(radius) >= FEWEST and len(radius) == len(state)
-    if not (elastic and closed and gas) or world.gravity.any():
+    """P/kT on the walls; None where the spheres are no gas in equilibrium, or freeze."""
+    if not is_still_gas(world, state, room):
         return None
     if not world.collide:
-        return len(radius) / room.volume
-    area = math.fsum(room.areas)
-    try:
-        return wall_pressure(radius, room.volume, area, room.stretch)
-    except InputError:  # it freezes
-        return None
+        return len(state) / room.volume
+    return in_range(wall_pressure, state.radius, room.volume, math.fsum(room.areas), room.stretch)
 
 
 def room_for(world: World, radius: float) -> Room:

@@ -5,17 +5,22 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from carom import mechanics
+from carom import mechanics, theory
 from carom.checks import number
 from carom.errors import InputError
 from carom.observe.batch import Moment
-from carom.observe.kinds import Kinds, conserves_energy, refuse_walls
+from carom.observe.fluid import in_range
+from carom.observe.kinds import Kinds, conserves_energy, is_elastic, refuse_walls
 from carom.observe.sampled import Sampled
 from carom.observe.series import Series, poisson
 from carom.observe.table import Table
 from carom.state import Floats, State
 from carom.world import PLANE, World
 
+POINTS = 50  #: in a layer, for the mean of a theory over it
+_FLOOR = theory.about(theory.barometric_density).ranges["floor_packing_fraction"]
+THIN = f"up to packing fraction {_FLOOR.high} at the floor"
+CROWDED = f"none, the barometric formula holds {THIN}"
 CENTRES = 500  #: spheres around which one sample counts the others
 
 
@@ -188,17 +193,13 @@ class DensityProfile(_Profile):
     """Number density of centres in layers across an axis.
 
     Theory, of one kind of spheres without walls: uniform; with gravity along the axis, of a
-    dilute gas: n(z) ~ exp(-m g z/kT) between the ends that centres can reach, with the mean
-    temperature. Result: `Table`.
+    dilute gas: `carom.theory.barometric_density` between the ends that centres can reach, with
+    the mean temperature. Result: `Table`.
 
     Parameters
     ----------
     axis, bins, every, at
         As of `_Profile`: "x", "y" or "z"; the number of layers; as of `Sampled`.
-
-    References
-    ----------
-    L. D. Landau, E. M. Lifshitz, Statistical Physics, part 1, section 38.
     """
 
     def begin(self, moment: Moment) -> None:
@@ -236,20 +237,31 @@ class DensityProfile(_Profile):
         if len(self.world.walls) == 0:
             return np.full(self._bins, n / self._area / (self._high - self._low)), "uniform"
         pull = float(self.world.gravity[self._axis])
-        if pull == 0 or self.world.period[self._axis] > 0:
-            return nothing
-        radius = float(self._single.radius[0])
+        across = np.delete(self.world.gravity, self._axis)
         kT = self._series.mean(self._bins).value
-        steep = float(self._single.mass[0]) * pull / kT
-        edges = np.linspace(self._low, self._high, self._bins + 1)
-        inside = np.clip(edges, self._low + radius, self._high - radius)
-        # Of exp(steep z), from the end where spheres gather.
-        foot = self._high - radius if steep > 0 else self._low + radius
-        share = np.diff(np.exp(steep * (inside - foot)) / steep)
-        return (
-            n * share / share.sum() / (self._area * (edges[1] - edges[0])),
-            "barometric formula of a dilute gas",
+        if pull == 0 or across.any() or not is_elastic(self.world) or not kT > 0:
+            return nothing
+        radius, mass = float(self._single.radius[0]), float(self._single.mass[0])
+        # Points in layers, and how high each is above the lowest place that a centre can reach.
+        steps = (np.arange(self._bins * POINTS) + 0.5) / (self._bins * POINTS)
+        height = steps * (self._high - self._low) - radius
+        if pull > 0:
+            height = height[::-1]
+        room = self._high - self._low - 2 * radius
+        inside = (height >= 0) & (height <= room)
+        # The formula is that of a column without a lid: of this one it is the lower part.
+        column = n / self._area / -math.expm1(-mass * abs(pull) * room / kT)
+        size = radius if self.world.collide else 0.0
+        density = in_range(
+            theory.barometric_density, height[inside], column, abs(pull), kT, mass, size
         )
+        if density is None:
+            return nothing[0], CROWDED
+        points = np.zeros(len(height))
+        points[inside] = density
+        line = points.reshape(self._bins, POINTS).mean(axis=1)
+        layer = self._area * (self._high - self._low) / self._bins
+        return line * (n / (line.sum() * layer)), f"barometric formula, {THIN}"
 
 
 class TemperatureProfile(_Profile):

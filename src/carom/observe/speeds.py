@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom import mechanics
+from carom import mechanics, theory
 from carom.errors import InputError
 from carom.observe.batch import Moment
 from carom.observe.kinds import conserves_energy, one_kind, unmoved
@@ -51,24 +51,16 @@ class ChiSquare(NamedTuple):
 class SpeedDistribution(Sampled):
     """Distribution of speeds about the motion of the whole, against the law it should follow.
 
-    N spheres that share a fixed energy E cannot quite follow Maxwell and Boltzmann. Where all
-    momentum is conserved the law is exactly ::
-
-        f(v) ~ v^2 [1 - N m v^2/(2 E (N - 1))]^((3 N - 8)/2)
-
-    and between walls v^2 [1 - m v^2/(2 E)]^((3 N - 5)/2); elsewhere it is Maxwell's at the
-    temperature where measuring begins. Errors, and `chi_square`, take samples for independent:
-    look rarely enough (each five mean free times, if not told). Result: `Table`.
+    N spheres that share a fixed energy cannot quite follow Maxwell and Boltzmann. Where all
+    momentum is conserved the law is exactly `carom.theory.few_speed_cdf`; between walls, where
+    none is, it is that of one sphere more. Elsewhere it is Maxwell's at the temperature where
+    measuring begins. Errors, and `chi_square`, take samples for independent: look rarely enough
+    (each five mean free times, if not told). Result: `Table`.
 
     Parameters
     ----------
     every, at
         As of `Sampled`.
-
-    References
-    ----------
-    The law follows from a uniform distribution on the sphere of constant energy; J. R. Ray,
-    H. W. Graben, Phys. Rev. A 44, 6905 (1991), doi:10.1103/PhysRevA.44.6905.
     """
 
     apart = 5.0
@@ -88,18 +80,15 @@ class SpeedDistribution(Sampled):
         self._edges = 6 * thermal * np.arange(BINS + 1) / BINS
         self._counts = np.zeros(BINS + 1)
         conserved = len(mechanics.conserved_axes(state, world))
-        self._law = "Maxwell's law"
-        middle, fine = (np.arange(BINS * 100) + 0.5) * (6 / BINS / 100), math.nan
-        if conserves_energy(world) and conserved in (0, 3) and n > 3:
+        few = n if conserved else n + 1  # walls take the place of one sphere
+        if conserves_energy(world) and conserved in (0, 3) and few >= 3:
             self._law = "the law of spheres that share a fixed energy"
-            # With f = 3 N or 3 N - 3 degrees of freedom, E = f kT/2.
-            freedom = 3 * n - conserved
-            fine = (n / (n - 1) if conserved else 1.0) / freedom
-            base = np.maximum(0, 1 - fine * middle**2)
-            density = middle**2 * base ** ((freedom - 5) / 2)
+            energy = 1.5 * kT * (n - 1 if conserved else n + 1)
+            slower = theory.few_speed_cdf(self._edges, few, energy, mass)
         else:
-            density = middle**2 * np.exp(-(middle**2) / 2)
-        share = density.reshape(BINS, 100).sum(axis=1)
+            self._law = "Maxwell's law"
+            slower = theory.maxwell_speed_cdf(self._edges, kT, mass)
+        share: Floats = np.diff(slower)
         self._share = share / share.sum()
 
     def sample(self, moment: Moment) -> None:

@@ -97,14 +97,22 @@ class Table:
 
     def rows(self) -> list[list[str]]:
         """All rows as text, errors in the last digits of their numbers, theory beside them."""
-        shown = [name for name in self.columns if not name.endswith("_error")]
-        return [[self._cell(name, row) for name in shown] for row in range(len(self))]
+        return [[self._cell(name, row) for name in self._shown] for row in range(len(self))]
 
     def heading(self) -> list[str]:
         """What stands above the columns of `rows`."""
-        names = [name for name in self.columns if not name.endswith("_error")]
         return [name.removesuffix("_theory") + " (theory)" * name.endswith("_theory")
-                for name in names]  # fmt: skip
+                for name in self._shown]  # fmt: skip
+
+    @property
+    def _shown(self) -> list[str]:
+        """Columns that stand in the text: no errors, and no theory that says nothing."""
+        return [
+            name
+            for name, column in self.columns.items()
+            if not name.endswith("_error")
+            and not (name.endswith("_theory") and np.isnan(column).all())
+        ]
 
     def _cell(self, name: str, row: int) -> str:
         if name in self.measured:
