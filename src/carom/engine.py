@@ -247,9 +247,8 @@ class FastEngine:
     def take_events(self) -> NDArray[Any]:
         """Records (dtype `EVENT`, absolute times) of all events since the last call."""
         with self._lock:
-            start, raw = self._core.take_log()
+            raw = self._core.take_log()
         events: NDArray[Any] = raw.view(EVENT)
-        events["time"] += start
         return events
 
     def state(self) -> State:

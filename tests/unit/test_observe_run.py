@@ -130,11 +130,13 @@ def test_results_do_not_depend_on_slices():
         sim = gas(method=lambda s, w: FastEngine(s, w, slice_seconds=seconds))
         one = virial()
         sim.run(collisions=30_000, observe=[one, heights(every=2)])
-        return one.result()
+        return one.result(), sim.events
 
-    first = results(1e-3)
-    assert first == results(0.05)
+    first, events = results(1e-4)
+    again, same_events = results(0.05)
+    assert first == again
     assert first.error > 0
+    assert np.array_equal(events, same_events)
 
 
 def test_no_events_are_kept_when_only_observed():
