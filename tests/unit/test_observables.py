@@ -26,7 +26,7 @@ def gas(walls=PERIODIC, n=27, **options):
     ("make", "options", "message"),
     [
         (observe.Compressibility, {"walls": carom.Open()}, "open space has no pressure"),
-        (observe.Compressibility, {"walls": BOX}, "use WallPressure where there are walls"),
+        (observe.Compressibility, {"walls": BOX}, "here are 6 walls; use WallPressure"),
         (observe.Compressibility, {"rule": carom.Smooth(0.9)}, "take restitution 1"),
         (observe.PressureTensor, {"walls": carom.Open()}, "open space has no pressure"),
         (observe.WallPressure, {}, "needs a wall of finite area"),
@@ -35,12 +35,12 @@ def gas(walls=PERIODIC, n=27, **options):
         (observe.CollisionRate, {"collide": False}, "nothing to count where collide=False"),
         (observe.FreeTime, {"walls": BOX, "gravity": (0, 0, -1)}, "take gravity away"),
         (observe.FreePath, {"walls": BOX, "gravity": (0, 0, -1)}, "take gravity away"),
-        (observe.Diffusion, {"walls": BOX}, "between walls displacements stay bounded"),
+        (observe.Diffusion, {"walls": BOX}, "take carom.Periodic, as walls bound"),
         (observe.Diffusion, {"rule": carom.Smooth(0.9)}, "take restitution 1"),
         (observe.Diffusion, {"walls": carom.Periodic(9, 9, 10)}, "make all sides equal"),
         (observe.Diffusion, {"collide": False}, "all move and collide"),
-        (observe.RDF, {"walls": BOX}, "no mean density to compare with"),
-        (observe.RDF, {"walls": carom.Open()}, "no mean density to compare with"),
+        (observe.RDF, {"walls": BOX}, "or there is no mean density"),
+        (observe.RDF, {"walls": carom.Open()}, "or there is no mean density"),
         (lambda: observe.RDF(reach=5), {}, "reach is 5, more than half the shortest side, 4.5"),
         (lambda: observe.RDF(reach=0.5), {}, "no two spheres can be"),
         (observe.DensityProfile, {"walls": carom.Open()}, "needs a box"),
@@ -195,8 +195,8 @@ class TestCommandLine:
         assert "3.98398" in out  # Kolafa, Labik and Malijevsky
         assert "rate (theory)" in out
         assert "max-overlap" in out
-        assert "compressibility: theory: Kolafa, Labik and Malijevsky" in out
-        assert "rows; --json has all" in out
+        assert "compressibility · theory: Kolafa, Labik and Malijevsky" in out
+        assert "is shown; --json has all" in out
 
     def test_json(self, capsys):
         names = "compressibility,diffusion,rdf"

@@ -32,12 +32,13 @@ def table():
 def test_text(table):
     assert str(table).splitlines() == [
         "Mean square displacement",
-        "time                msd  msd (theory)",
-        " 0.1         0.0200(10)          0.03",
-        "   1            1.01(2)             3",
-        "  20  5 (error unknown)              ",
+        "time         msd  msd (theory)",
+        " 0.1  0.0200(10)          0.03",
+        "   1     1.01(2)             3",
+        "  20        5(?)              ",
         "theory: free flight, short times",
         "not settled",
+        "(?): too few independent samples to know the error; run longer",
     ]
     assert len(table) == 3
     assert repr(table) == str(table)
@@ -109,11 +110,11 @@ def test_a_picture(table):
     matplotlib.use("agg")
     axes = table.plot()
     assert axes.get_title() == table.title
-    assert axes.get_xlabel() == "time (time)"
-    assert axes.get_ylabel() == "length^2"
+    assert axes.get_xlabel() == "time"
+    assert axes.get_ylabel() == "msd (length²)"
     assert axes.get_xscale() == "log"
     assert [text.get_text() for text in axes.get_legend().get_texts()] == [
-        "free flight, short times",
+        "theory: free flight, short times",
         "msd",
     ]
     names = Table.of_estimates("Z", {"Z": (Estimate(9.3, 0.1, 50), Theory(9.38, "CS"))})

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from rich.console import RenderableType
+from rich.console import Group, RenderableType
 from rich.text import Text
 
 from carom.checks import nearest
@@ -65,7 +65,7 @@ def sheets(results: dict[str, Table | str]) -> Sequence[RenderableType]:
     notes: list[str] = []
     for name, found in results.items():
         if isinstance(found, str):
-            notes.append(f"{name}: {found}")
+            notes.append(f"{name} · {found}")
         elif "quantity" in found.columns and len(found) == 1:
             many = found["n_independent"][0]
             theory = found["value_theory"][0]
@@ -75,21 +75,29 @@ def sheets(results: dict[str, Table | str]) -> Sequence[RenderableType]:
                 "" if theory != theory else report.decimal(theory),
                 "" if many != many else report.count(many),
             )
-            notes += [f"{name}: {note}" for note in found.footnotes()]
+            notes += [f"{name} · {note}" for note in found.footnotes()]
         else:
             parts.append(_sheet(found))
-            notes += [f"{name}: {note}" for note in found.footnotes()]
+            notes += [f"{name} · {note}" for note in [*found.footnotes(), *_shortened(found)]]
     if single.row_count:
         parts.insert(0, single)
     return [*parts, *(Text(note, style="dim") for note in notes)]
 
 
 def _sheet(found: Table) -> RenderableType:
-    sheet = report.table(Text(found.title, style="bold"), *found.heading())
-    rows = found.rows()
-    step = -(-len(rows) // MOST_ROWS)
-    for row in rows[::step]:
+    sheet = report.table(None, *found.heading())
+    for row in found.rows()[:: _step(found)]:
         sheet.add_row(*row)
-    if step > 1:
-        sheet.caption = f"each {step}th of {len(rows)} rows; --json has all"
-    return sheet
+    # Above a table of few columns a title of its own would be broken into lines.
+    return Group(Text(found.title, style="bold"), sheet)
+
+
+def _step(found: Table) -> int:
+    return -(-len(found) // MOST_ROWS)
+
+
+def _shortened(found: Table) -> list[str]:
+    """What to say where not all rows are shown."""
+    if _step(found) < 2:
+        return []
+    return [f"1 row in {_step(found)} of {len(found)} is shown; --json has all"]

@@ -11,6 +11,7 @@ from carom.observe.estimate import Estimate
 from carom.state import Floats
 
 FEWEST_BLOCKS = 8  #: of fewer the spread itself is unknown by a quarter and more
+ROUNDING = 1e-12  #: less, relative to the numbers themselves, is no change
 CANDIDATES = 64  #: places at which a series is tried to be cut
 COARSE = 512  #: means to which a series is shortened before it is tried
 
@@ -51,7 +52,7 @@ def blocking(values: ArrayLike) -> Estimate:
     Examples
     --------
     >>> blocking([2.5] * 64)
-    Estimate(2.5(0), 64 independent)
+    Estimate(2.5, 64 independent)
     """
     x = np.asarray(values, np.float64)
     if x.ndim != 1 or not np.isfinite(x).all():
@@ -153,7 +154,7 @@ def settling(values: ArrayLike) -> Settling:
         size = len(x) // COARSE
         x = x[: len(x) // size * size].reshape(-1, size).mean(axis=1)
     n = len(x)
-    if n < 4 * FEWEST_BLOCKS or np.ptp(x) == 0:
+    if n < 4 * FEWEST_BLOCKS or np.ptp(x) <= ROUNDING * np.abs(x).max():
         return Settling(0.0, 0.0)
     cuts = np.unique(np.linspace(0, n // 2, CANDIDATES).astype(int))
     left = [(n - cut) / _inefficiency(x[cut:]) for cut in cuts]

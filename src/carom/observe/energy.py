@@ -28,6 +28,8 @@ COLUMNS = (
 class Energy(Sampled):
     """Kinetic and potential energy at moments, and what was dissipated since it began, by cause.
 
+    The beginning, and the end of each run, are always among the moments.
+
     The restitution of walls took J^2 (1 - e)/(2 m (1 + e)) at each hit, rest J^2/(2 m); the rule
     of spheres took what else is missing. `withheld` is what the contact-time cure has kept from
     being taken. Result: `Table` over time; these are readings, which have no statistical error.
@@ -35,7 +37,7 @@ class Energy(Sampled):
     Parameters
     ----------
     every, at
-        As of `Sampled`; the beginning is always in it.
+        As of `Sampled`.
     """
 
     def begin(self, moment: Moment) -> None:
@@ -62,6 +64,10 @@ class Energy(Sampled):
         """Take a reading."""
         if moment.time > self._readings[-1][0]:
             self._read(moment)
+
+    def end(self, moment: Moment) -> None:
+        """Take a last reading."""
+        self.sample(moment)
 
     def _read(self, moment: Moment) -> None:
         dissipated, withheld = moment.dissipated, moment.withheld

@@ -51,13 +51,13 @@ class Estimate:
         return difference / both
 
     def __str__(self) -> str:
-        """Write the value with its error in units of its last digits: 9.385(4)."""
+        """Write the value with its error in units of its last digits: 9.385(4), or 9.385(?)."""
         if not math.isfinite(self.value):
             return str(self.value)
         if not math.isfinite(self.error):
-            return f"{self.value:.6g} (error unknown)"
+            return f"{self.value:.6g}(?)"
         if self.error == 0:
-            return f"{self.value:.6g}(0)"
+            return f"{self.value:.6g}"
         power = math.floor(math.log10(self.error))
         if float(f"{self.error:.0e}") < 2 * 10.0**power:  # a 1 alone would be half as good
             power -= 1

@@ -30,7 +30,7 @@ class FreeTime(Observable):
     `carom.theory.mean_free_time`. Result: `Table`; `mean` is an `Estimate`.
     """
 
-    _unit = "time"
+    _title, _unit = "Free time", "time"
 
     def begin(self, moment: Moment) -> None:
         """Start the flight of every sphere."""
@@ -143,7 +143,7 @@ class FreeTime(Observable):
             line = np.diff(self._below(edges, self._mean(self._fluid))) / self._width
             said = f", theory {self._mean(self._fluid):.6g}"
         return Table(
-            f"{self.name}: mean {mean}{said}",
+            f"{self._title}: mean {mean}{said}",
             {
                 self._unit: x,
                 "density": density,
@@ -171,7 +171,7 @@ class FreePath(FreeTime):
     `carom.theory.mean_free_path`. Otherwise as `FreeTime`.
     """
 
-    _unit = "length"
+    _title, _unit = "Free path", "length"
 
     def begin(self, moment: Moment) -> None:
         """Start the flight of every sphere at its velocity."""

@@ -119,7 +119,12 @@ def refuse_walls(world: World, name: str, instead: str) -> None:
         With `instead` as the remedy.
     """
     if not is_periodic(world):
-        msg = f"{name} needs a box that is periodic along all three axes; {instead}"
+        walls = len(world.walls)
+        here = f"here are {walls} walls" if walls > 1 else "here is a wall"
+        if walls == 0:
+            bare = [axis for axis, length in zip("xyz", world.period, strict=True) if length == 0]
+            here = f"{' and '.join(bare)} {'are' if len(bare) > 1 else 'is'} open here"
+        msg = f"{name} needs a box periodic along all three axes, and {here}; {instead}"
         raise InputError(msg)
 
 

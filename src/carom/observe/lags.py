@@ -242,7 +242,7 @@ class Diffusion(MSD):
     def begin(self, moment: Moment) -> None:
         """Refuse a world in which spheres cannot go far."""
         state, world = moment.state, moment.world
-        refuse_walls(world, self.name, "between walls displacements stay bounded")
+        refuse_walls(world, self.name, "take carom.Periodic, as walls bound displacements")
         refuse_losses(world, self.name)
         if np.ptp(world.period) > 0:
             msg = f"{self.name} knows the size correction of a cube only; make all sides equal"
@@ -276,7 +276,7 @@ class Diffusion(MSD):
         rows: dict[str, tuple[Estimate, Theory | None]] = {
             f"D in a cube of {side:.6g}": (means[1], None)
         }
-        note = f"no size correction without viscosity=; theory is {self._said}"
+        note = "no size correction: it takes a viscosity, and theory has none; give viscosity="
         eta, expected = self._viscosity, None
         if self._fluid is not None:
             eta = eta or float(theory.shear_viscosity(*self._fluid))

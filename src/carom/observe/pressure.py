@@ -25,7 +25,6 @@ from carom.world import World
 
 AXES = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 WALLED = f"a fluid between walls, theory.wall_pressure, {UP_TO}"
-WALLS = "use WallPressure where there are walls; open space has no pressure"
 
 
 def _fluid_z(state: State, world: World) -> Theory:
@@ -39,6 +38,12 @@ def _fluid_z(state: State, world: World) -> Theory:
     else:
         z, name = in_range(theory.bmcsl, state.radius, mechanics.volume(world)), "BMCSL"
     return Theory(math.nan, FREEZES) if z is None else Theory(z, f"{name}, a fluid {UP_TO}")
+
+
+def _instead(world: World) -> str:
+    if len(world.walls):
+        return "use WallPressure (wall-pressure) between walls"
+    return "open space has no pressure: give the world walls, or carom.Periodic"
 
 
 class Compressibility(Observable):
@@ -58,7 +63,7 @@ class Compressibility(Observable):
     def begin(self, moment: Moment) -> None:
         """Refuse what has no volume, or no temperature that lasts."""
         state, world = moment.state, moment.world
-        refuse_walls(world, self.name, WALLS)
+        refuse_walls(world, self.name, _instead(world))
         refuse_losses(world, self.name)
         self._scale = 3 * len(state) * mechanics.temperature(state, world)
         if state.fixed.any() or not self._scale > 0:
@@ -118,7 +123,7 @@ class PressureTensor(Observable):
     def begin(self, moment: Moment) -> None:
         """Refuse what has no volume."""
         state, world = moment.state, moment.world
-        refuse_walls(world, self.name, WALLS)
+        refuse_walls(world, self.name, _instead(world))
         if state.fixed.any():
             msg = f"{self.name} is of spheres that all move; make none fixed"
             raise InputError(msg)
@@ -186,8 +191,8 @@ class WallPressure(Observable):
         room = room_for(world, float(state.radius[free].mean()) if free.any() else 0.0)
         if not np.isfinite(room.areas).any():
             msg = (
-                f"{self.name} needs a wall of finite area; close the room with walls, or use "
-                "Compressibility in a periodic box"
+                f"{self.name} needs a wall of finite area, and here is none; close the room with "
+                "walls, or use Compressibility in a periodic box"
             )
             raise InputError(msg)
         self._areas: Floats = room.areas

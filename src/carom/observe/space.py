@@ -56,7 +56,7 @@ class RDF(Sampled):
         """Refuse what has no mean density."""
         super().begin(moment)
         state, world = moment.state, moment.world
-        refuse_walls(world, self.name, "without one there is no mean density to compare with")
+        refuse_walls(world, self.name, "take carom.Periodic, or there is no mean density")
         diameter, half = 2 * float(state.radius.mean()), float(world.period.min()) / 2
         self._reach = min(3 * diameter, half) if self._asked is None else self._asked
         if self._reach > half:

@@ -110,9 +110,9 @@ class SpeedDistribution(Sampled):
         found = self.chi_square()
         width = self._edges[1]
         per = 1 / (self._counts.sum() * width)
-        said = f"chi-square {found.value:.4g} for {found.freedom}, p {found.p:.3f}"
+        said = f"chi-square {found.value:.4g} of {found.freedom} degrees of freedom"
         return Table(
-            f"Speeds: {said}",
+            f"Speeds: {said}, p = {found.p:.3f}",
             {
                 "speed": (self._edges[1:] + self._edges[:-1]) / 2,
                 "density": self._counts[:-1] * per,

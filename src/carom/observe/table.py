@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from carom.errors import FileError, InputError
 from carom.observe.estimate import Estimate
 
+UNKNOWN = "(?): too few independent samples to know the error; run longer"
 FORMATS = (".csv", ".json", ".npz")
 
 
@@ -101,8 +102,11 @@ class Table:
 
     def heading(self) -> list[str]:
         """What stands above the columns of `rows`."""
-        return [name.removesuffix("_theory") + " (theory)" * name.endswith("_theory")
-                for name in self._shown]  # fmt: skip
+        words = [name.removesuffix("_theory").replace("_", " ") for name in self._shown]
+        return [
+            f"{word} (theory)" if name.endswith("_theory") else word
+            for word, name in zip(words, self._shown, strict=True)
+        ]
 
     @property
     def _shown(self) -> list[str]:
@@ -131,7 +135,11 @@ class Table:
     __repr__ = __str__
 
     def footnotes(self) -> list[str]:
-        """The theory's name, and the notes."""
+        """The theory's name, the notes, and what (?) means where it stands."""
+        unknown = any(np.isnan(self.columns[f"{name}_error"]).any() for name in self.measured)
+        return [*self._said(), *([UNKNOWN] if unknown else [])]
+
+    def _said(self) -> list[str]:
         return [*([f"theory: {self.theory}"] if self.theory else []), *self.notes]
 
     def to_pandas(self) -> Any:
@@ -203,7 +211,7 @@ class Table:
     def _write_csv(self, file: Path) -> None:
         units = [f"{name} in {unit}" for name, unit in self.units.items()]
         with file.open("w", newline="", encoding="utf-8") as out:
-            out.writelines(f"# {line}\n" for line in [self.title, *units, *self.footnotes()])
+            out.writelines(f"# {line}\n" for line in [self.title, *units, *self._said()])
             writer = csv.writer(out)
             writer.writerow(self.columns)
             writer.writerows(zip(*(c.tolist() for c in self.columns.values()), strict=True))
