@@ -114,12 +114,11 @@ auto state_of(const Engine& engine) {
 }
 
 auto take_log(Engine& engine) {
-    double start = 0;
-    const std::vector<carom::Record> log = engine.take_log(start);
+    const std::vector<carom::Record> log = engine.take_log();
     const size_t n = log.size() * sizeof(carom::Record);
     auto bytes = room_for<uint8_t>(n);
     if (n > 0) std::memcpy(bytes.get(), log.data(), n);
-    return nb::make_tuple(start, array_of(std::move(bytes), n));
+    return array_of(std::move(bytes), n);
 }
 
 }  // namespace
@@ -148,8 +147,8 @@ NB_MODULE(_core, m) {
                      "NDArray[numpy.int32], NDArray[numpy.uint32], NDArray[numpy.uint8]]"),
              "(position, velocity, image, count, resting) at `time`.")
         .def("take_log", &take_log,
-             nb::sig("def take_log(self) -> tuple[float, NDArray[numpy.uint8]]"),
-             "(start time, records as bytes) since the last call.")
+             nb::sig("def take_log(self) -> NDArray[numpy.uint8]"),
+             "Records since the last call, as bytes.")
         .def("max_overlap", &Engine::max_overlap, "Deepest overlap met, in contact distances.")
         .def("check", &Engine::check, "Raises if two structures contradict one another.")
         .def(

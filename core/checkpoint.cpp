@@ -102,8 +102,7 @@ void Engine::restore(const std::string& bytes) {
         if (!watches_.empty()) r.one(watches_[i]);
     }
     log_.clear();
-    log_start_ = time();
-    log_shift_ = happened_ = user_;
+    happened_ = user_;
     build_shells();
     predict_all();
 }

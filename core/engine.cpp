@@ -56,8 +56,6 @@ Engine::Engine(const StartSpheres& start, double time, const World& world, const
     choose_epoch(time);
     now_ = user_ = happened_ = clock_.offset(time);
     for (Sphere& s : spheres_) s.t = now_;
-    log_start_ = time;
-    log_shift_ = user_;
     choose_shells(tuning);
     sort_in_memory();
     build_shells();
@@ -165,12 +163,7 @@ double Engine::max_overlap() const {
     return deepest;
 }
 
-std::vector<Record> Engine::take_log(double& start) {
-    start = log_start_;
-    log_start_ = time();
-    log_shift_ = user_;
-    return std::exchange(log_, {});
-}
+std::vector<Record> Engine::take_log() { return std::exchange(log_, {}); }
 
 size_t Engine::bytes() const {
     const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };

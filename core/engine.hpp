@@ -60,8 +60,8 @@ public:
     const Work& work() const { return work_; }
     const Profile& profile() const { return profile_; }
 
-    // All events since the last call; `start` is the time their offsets count from.
-    std::vector<Record> take_log(double& start);
+    // All events since the last call.
+    std::vector<Record> take_log();
 
     // The stored states as they are. Predictions are pure, so the queue need not be saved.
     std::string checkpoint() const;
@@ -262,8 +262,6 @@ private:
     Collapse collapse_;
     bool logging_ = true;
     double slice_ = 0.05;
-    double log_start_ = 0;  // absolute
-    double log_shift_ = 0;  // offset of log_start_ in this epoch
     std::vector<Record> log_;
 };
 

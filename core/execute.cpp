@@ -209,7 +209,8 @@ void Engine::watch(int32_t i, int32_t j, double t, double speed) {
 
 void Engine::log(double t, int32_t i, int32_t j, const Vec3& impulse) {
     if (!logging_) return;
-    log_.push_back({t - log_shift_, labels_[size_t(i)], j >= 0 ? labels_[size_t(j)] : j, impulse});
+    const int32_t partner = j >= 0 ? labels_[size_t(j)] : j;
+    log_.push_back({clock_.time(t), labels_[size_t(i)], partner, impulse});
 }
 
 }  // namespace carom

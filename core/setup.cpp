@@ -259,7 +259,6 @@ void Engine::begin_epoch(double t) {
     user_ -= step;
     happened_ -= step;
     asked_ = kNever;
-    log_shift_ -= step;
     now_ = std::max(0.0, now_ - step);
     if (epoch_events_ < 4 * int64_t(size())) clock_.epoch *= 2;
     epoch_events_ = 0;

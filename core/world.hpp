@@ -43,7 +43,7 @@ private:
     std::function<StartSphere(size_t)> one_;
 };
 
-struct Record {  // one event as Python sees it, 40 bytes; time counts from the batch's start
+struct Record {  // one event as Python sees it, 40 bytes
     double time;
     int32_t i, j;
     Vec3 impulse;  // on i

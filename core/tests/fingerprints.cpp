@@ -113,8 +113,7 @@ uint64_t fingerprint(const Scene& scene, const Tuning& tuning) {
         add(s.image.x), add(s.image.y), add(s.image.z);
         add(s.count), add(s.resting);
     }
-    double from = 0;
-    for (const Record& r : engine.take_log(from)) add(r.i), add(r.j), add(r.impulse.x);
+    for (const Record& r : engine.take_log()) add(r.i), add(r.j), add(r.impulse.x);
     add(engine.dissipated());
     return hash;
 }

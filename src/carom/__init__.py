@@ -10,7 +10,7 @@
 
 from typing import TYPE_CHECKING
 
-from carom import scenes
+from carom import observe, scenes
 from carom.ball import Ball
 from carom.errors import (
     CaromError,
@@ -21,6 +21,7 @@ from carom.errors import (
     RunError,
     UnknownNameError,
 )
+from carom.observe.observable import log_times
 from carom.rules import Smooth
 from carom.scene import Camera, Scene, Spheres
 from carom.simulation import Bookmark, Simulation
@@ -53,6 +54,8 @@ __all__ = [
     "UnknownNameError",
     "Vector",
     "__version__",
+    "log_times",
+    "observe",
     "scenes",
 ]
 

@@ -71,8 +71,8 @@ class Engine:
     ]:
         """(position, velocity, image, count, resting) at `time`."""
 
-    def take_log(self) -> tuple[float, NDArray[numpy.uint8]]:
-        """(start time, records as bytes) since the last call."""
+    def take_log(self) -> NDArray[numpy.uint8]:
+        """Records since the last call, as bytes."""
 
     def max_overlap(self) -> float:
         """Deepest overlap met, in contact distances."""

@@ -120,8 +120,8 @@ class FastEngine:
     space become neighbours in memory), `grid` (1: neighbours on a grid where that can be, 0: in
     lists, -1: whichever is faster) and `ahead` (1: look ahead at what coming events will touch, and
     solve for their times no sooner, 0: do not, -1: where spheres come from memory) are bookkeeping
-    for tests: the trajectory's bits do not depend on them; `profile` asks how long each part takes. Any thread may call it: a call waits for the
-    slice in hand.
+    for tests: the trajectory's bits do not depend on them; `profile` asks how long each part takes.
+    Any thread may call it: a call waits for the slice in hand.
     """
 
     def __init__(
@@ -247,9 +247,8 @@ class FastEngine:
     def take_events(self) -> NDArray[Any]:
         """Records (dtype `EVENT`, absolute times) of all events since the last call."""
         with self._lock:
-            start, raw = self._core.take_log()
+            raw = self._core.take_log()
         events: NDArray[Any] = raw.view(EVENT)
-        events["time"] += start
         return events
 
     def state(self) -> State:

@@ -1,10 +1,9 @@
 """Spheres under way: what is now, what has happened, and the engine that goes on from there."""
 
 import math
-from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,55 +12,17 @@ from carom import edits, fit, mechanics
 from carom.engine import NO_LIMIT, Engine, Resumable, Stop
 from carom.errors import InputError
 from carom.interrupts import HeldInterrupt
-from carom.rules import Smooth
-from carom.scene import Scene, Spheres
-from carom.state import EVENT, State
-from carom.walls import Wall, wall_names, world
+from carom.kept import Account, EventKeeper, Serials, Start, Surroundings
+from carom.observe.feed import Feed
+from carom.scene import Spheres
+from carom.state import State
+from carom.walls import wall_names
+from carom.watch import Watch
 from carom.world import World
 
 MakeEngine = Callable[[State, World], Engine]
-Serials = NDArray[np.int64]
-
-
-@dataclass(frozen=True)
-class Surroundings:
-    """Everything about a world that is not a sphere, as people write it."""
-
-    walls: tuple[Wall, ...]
-    rule: Smooth
-    gravity: tuple[float, float, float]
-    collide: bool
-
-    @classmethod
-    def of(cls, scene: Scene) -> Self:
-        """Those of a scene."""
-        return cls(scene.walls, scene.rule, scene.gravity, scene.collide)
-
-    def world(self) -> World:
-        """The same as numbers; contradictions are refused with `InputError`."""
-        return world(self.walls, self.rule, self.gravity, self.collide)
-
-
-@dataclass(frozen=True, eq=False)
-class Start:
-    """Where the first run began."""
-
-    state: State
-    surroundings: Surroundings
-    serial: Serials
-    edited: bool
-
-
-@dataclass(frozen=True)
-class Account:
-    """What engines that are gone have counted, and the energy the present one began with."""
-
-    energy: float
-    dissipated: float = 0.0
-    withheld: float = 0.0
-    overlap: float = 0.0
-    drift: float = 0.0
-    missed: int = 0
+#: The same; True asks for an engine that keeps event records.
+MakeLogging = Callable[[State, World, bool], Engine]
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,32 +51,6 @@ class Saved:
         return held + self.serial.nbytes + len(self.engine or b"")
 
 
-class EventKeeper:
-    """The newest `limit` event records of one run, kept in the batches they came in."""
-
-    def __init__(self, limit: int) -> None:
-        self.limit = limit
-        self._batches: deque[NDArray[Any]] = deque()
-        self._count = 0
-
-    def clear(self) -> None:
-        """Forget all records."""
-        self._batches.clear()
-        self._count = 0
-
-    def append(self, batch: NDArray[Any]) -> None:
-        """Take a batch, and let go of old ones beyond the limit."""
-        self._batches.append(batch)
-        self._count += len(batch)
-        while self._batches and self._count - len(self._batches[0]) >= self.limit:
-            self._count -= len(self._batches.popleft())
-
-    def records(self) -> NDArray[Any]:
-        """(n,) EVENT, oldest first."""
-        joined = np.concatenate([np.zeros(0, EVENT), *self._batches])
-        return joined[max(0, len(joined) - self.limit) :]
-
-
 class Motion:
     """A state, its surroundings, and an engine built from both when it is first needed.
 
@@ -127,7 +62,7 @@ class Motion:
     state : State
     surroundings : Surroundings
     make_engine : callable
-        ``(state, world) -> Engine``.
+        ``(state, world, log) -> Engine``; `log` says whether event records are wanted.
     keep_events : int
         How many of the newest events of a run `events` holds.
     strict : bool
@@ -139,13 +74,14 @@ class Motion:
         self,
         state: State,
         surroundings: Surroundings,
-        make_engine: MakeEngine,
+        make_engine: MakeLogging,
         keep_events: int,
         strict: bool = True,
     ) -> None:
         self._make_engine = make_engine
         self._strict = strict
         self._kept = EventKeeper(keep_events)
+        self._logs = keep_events > 0
         self._born = 0
         self.begin(state, surroundings)
 
@@ -347,7 +283,7 @@ class Motion:
         if saved.engine is not None:
             same = self._built is saved.built and self.world is saved.world
             engine = self._engine if same else None
-            engine = engine or self._make_engine(saved.built, saved.world)
+            engine = engine or self._make_engine(saved.built, saved.world, self._logs)
             assert isinstance(engine, Resumable)
             engine.restore(saved.engine)
         self._engine, self._built = engine, saved.built
@@ -363,24 +299,61 @@ class Motion:
         collisions: int = NO_LIMIT,
         events: int = NO_LIMIT,
         progress: Callable[[], object] | None = None,
+        feed: Feed | None = None,
     ) -> Stop:
-        """Run to a time or for a count; Ctrl-C and `progress` get a turn between slices."""
+        """Run to a time or for a count; Ctrl-C and `progress` get a turn between slices.
+
+        `feed` gets all events, and the moments it asks for: the engine stops exactly there.
+        """
         self._kept.clear()
         self._start = self.start
+        engine = self._ready(log=feed is not None and feed.takes_events)
+        pairs, walls = engine.collisions, engine.wall_collisions
+        watch = Watch(engine)
+        stop = Stop.SLICE
+        try:
+            with HeldInterrupt() as interrupt:
+                while stop is Stop.SLICE:
+                    hits = engine.collisions - pairs
+                    total = hits + engine.wall_collisions - walls
+                    due = min(until, math.inf if feed is None else feed.due)
+                    stop = Stop(engine.advance(due, collisions - hits, events - total))
+                    self._snapshot = None
+                    records = engine.take_events()
+                    self._kept.append(records)
+                    if feed is not None:
+                        feed.events(records)
+                        feed.moment(self)
+                        if stop is Stop.TIME and due < until:
+                            stop = Stop.SLICE
+                            if until == math.inf and watch.nothing_left(self._probe):
+                                stop = Stop.IDLE
+                    if progress is not None:
+                        progress()
+                    interrupt.deliver()
+        except KeyboardInterrupt:
+            if feed is not None:
+                feed.end(self)
+            raise
+        if feed is not None:
+            feed.end(self)
+        return stop
+
+    def _ready(self, log: bool) -> Engine:
+        """The engine, built if there is none, and keeping records if they are wanted."""
         if self._engine is None:
             self._built = self.state
-            self._engine = self._make_engine(self._built, self.world)
-        engine = self._engine
-        pairs, walls = engine.collisions, engine.wall_collisions
-        stop = Stop.SLICE
-        with HeldInterrupt() as interrupt:
-            while stop is Stop.SLICE:
-                hits = engine.collisions - pairs
-                total = hits + engine.wall_collisions - walls
-                stop = Stop(engine.advance(until, collisions - hits, events - total))
-                self._snapshot = None
-                self._kept.append(engine.take_events())
-                if progress is not None:
-                    progress()
-                interrupt.deliver()
-        return stop
+            self._logs = log or self._kept.limit > 0
+            self._engine = self._make_engine(self._built, self.world, self._logs)
+        elif log and not self._logs:
+            self._logs = True
+            if isinstance(self._engine, Resumable):  # others keep records always
+                logging = self._make_engine(self._built, self.world, True)
+                assert isinstance(logging, Resumable)
+                logging.restore(self._engine.checkpoint())
+                self._engine = logging
+        return self._engine
+
+    def _probe(self) -> Engine:
+        """An engine that goes on from here without any trace."""
+        return self._make_engine(self.state, self.world, False)

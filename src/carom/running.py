@@ -3,12 +3,13 @@
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import Self
+from typing import Any, Self
 
 from carom import mechanics
 from carom.checks import number
 from carom.engine import Stop
 from carom.errors import CollapseError, InputError, RunError
+from carom.observe.feed import Feed
 from carom.placing import Placing
 from carom.walls import wall_names
 
@@ -26,6 +27,7 @@ class Running(Placing):
         collisions: float | None = None,
         events: float | None = None,
         progress: Callable[[Self], object] | None = None,
+        observe: Any = None,
     ) -> None:
         """Let time run to exactly a moment, or through exactly so many collisions.
 
@@ -44,11 +46,14 @@ class Running(Placing):
             Collisions between spheres and with walls together.
         progress : callable, optional
             Called with this simulation about twenty times a second.
+        observe : Observable or several, optional
+            What to measure on the way, see `carom.observe`. That changes no bit of the motion.
 
         Raises
         ------
         InputError
-            If not exactly one goal is given, or it cannot be reached.
+            If not exactly one goal is given, or it cannot be reached, or something to observe
+            has no meaning here.
         RunError
             If nothing will ever happen again before the count is full.
         CollapseError
@@ -65,10 +70,12 @@ class Running(Placing):
             raise InputError(msg)
         ((name, value),) = given.items()
         turn = None if progress is None else partial(progress, self)
+        goal = self._end(name, value) if name in ("until", "duration") else count(name, value)
+        feed = None if observe is None else Feed(observe, self._motion)
         if name in ("until", "duration"):
-            stop = self._motion.advance(until=self._end(name, value), progress=turn)
+            stop = self._motion.advance(until=goal, progress=turn, feed=feed)
         else:
-            stop = self._run_count(name, count(name, value), turn)
+            stop = self._run_count(name, int(goal), turn, feed)
         if stop is Stop.COLLAPSE:
             raise CollapseError(self._collapse_message())
 
@@ -84,13 +91,15 @@ class Running(Placing):
             raise InputError(msg)
         return end
 
-    def _run_count(self, name: str, wanted: int, turn: Callable[[], object] | None) -> Stop:
+    def _run_count(
+        self, name: str, wanted: int, turn: Callable[[], object] | None, feed: Feed | None
+    ) -> Stop:
         before = self.collisions, self.wall_collisions
         # Spheres that cannot meet may bounce between walls for ever without one collision.
         alone = len(self) < 2 or not self._motion.world.collide
         stop = Stop.IDLE
         if not (name == "collisions" and alone and wanted > 0):
-            stop = self._motion.advance(**{name: wanted}, progress=turn)
+            stop = self._motion.advance(**{name: wanted}, progress=turn, feed=feed)
         done = self.collisions - before[0]
         done += self.wall_collisions - before[1] if name == "events" else 0
         if stop is Stop.IDLE and done < wanted:

@@ -11,9 +11,10 @@ import numpy as np
 
 from carom.checks import number
 from carom.errors import InputError
+from carom.kept import Surroundings
 from carom.listing import Listing
 from carom.methods import TICKS_PER_SECOND, Method, engine_maker
-from carom.motion import Motion, Saved, Surroundings
+from carom.motion import Motion, Saved
 from carom.rules import Smooth
 from carom.running import Running, count
 from carom.scene import Scene, Spheres
@@ -108,7 +109,7 @@ class Simulation(Running):
 
     def _moved(self, state: State, around: Surroundings, keep_events: int) -> Motion:
         """What carries spheres on by this simulation's method."""
-        make = engine_maker(self._method, self._tick, log=keep_events > 0)
+        make = engine_maker(self._method, self._tick)
         return Motion(state, around, make, keep_events, strict=self._method != "tick")
 
     @property

@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
-#: One collision, 40 bytes. `time` is an offset from the start of its batch. Pairs have
-#: i < j and `impulse` acts on i, −impulse on j. `j = -1 - k` is wall k,
-#: `j = CAME_TO_REST - k` came to rest on wall k, `j = WOKE` left its rest (no impulse).
+#: One collision, 40 bytes. Pairs have i < j and `impulse` acts on i, −impulse on j. `j = -1 - k`
+#: is wall k, `j = CAME_TO_REST - k` came to rest on wall k, `j = WOKE` left its rest (no impulse).
 EVENT: np.dtype[Any] = np.dtype([("time", "f8"), ("i", "i4"), ("j", "i4"), ("impulse", "f8", (3,))])
 CAME_TO_REST = -(2**20) - 1
 WOKE = -(2**21)

@@ -13,6 +13,7 @@ SAYS = {
     "gas": "Maxwell",
     "cradle": "[2.0, 2.0, 0.0, 0.0, 0.0] -> [0.0, 0.0, 0.0, 2.0, 2.0]",
     "ticks": "deepest overlap",
+    "own_observable": "Maxwell 1.5958",
 }
 
 

@@ -18,15 +18,18 @@ def blocks(name, language):
     return [body for kind, body in FENCE.findall(text) if kind == language]
 
 
-def test_python():
+@pytest.mark.parametrize(
+    ("page", "fewest"), [("python.md", 30), ("theory.md", 6), ("observe.md", 9)]
+)
+def test_python(page, fewest):
     parser, runner = doctest.DocTestParser(), doctest.DocTestRunner(optionflags=FLAGS)
     names: dict[str, object] = {}
-    for number, body in enumerate(blocks("python.md", "python")):
-        test = parser.get_doctest(body, names, f"python.md block {number}", "python.md", 0)
+    for number, body in enumerate(blocks(page, "python")):
+        test = parser.get_doctest(body, names, f"{page} block {number}", page, 0)
         runner.run(test, clear_globs=False)
         names.update(test.globs)
     assert runner.summarize(verbose=False).failed == 0
-    assert runner.tries > 30
+    assert runner.tries > fewest
 
 
 @pytest.mark.parametrize(

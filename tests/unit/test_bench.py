@@ -134,10 +134,6 @@ class TestAnswers:
         assert rate["error"] == pytest.approx(1.2 / math.sqrt(20_000))
         assert abs(rate["measured"] / rate["expected"] - 1) < rate["allowed"]
 
-    def test_enskog_is_the_dilute_gas_where_it_is_dilute(self):
-        # Kinetic theory: 4 sqrt(pi) n sigma^2 sqrt(kT/m), n = 6 phi/pi.
-        assert answers.enskog(1e-6, 4.0) == pytest.approx(48e-6 / math.sqrt(math.pi), rel=1e-5)
-
     def test_a_wrong_rate_is_refused(self):
         run = Run(SMALL)
         run.measure()

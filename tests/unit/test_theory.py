@@ -1,11 +1,15 @@
-"""Equations of state against published values, and the wall's tension against what is exact."""
+"""What formulas have in common; mixtures and walls against what is published or exact."""
 
+import inspect
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import carom
+from carom import theory
 from carom.theory import FREEZING, bmcsl, carnahan_starling, wall_pressure, wall_tension
 
 
@@ -50,6 +54,16 @@ def test_tension_in_a_thin_gas_is_exact():
     assert wall_tension([0.5], 1 / n) == pytest.approx(-math.pi / 8 * n * n, rel=1e-3)
 
 
+@pytest.mark.parametrize("phi", [0.1, 0.3, 0.49])
+def test_tension_of_equal_spheres(phi):
+    # -(9/(2 pi)) phi^2 (1 + phi)/(1 - phi)^3 kT/sigma^2 of scaled-particle theory, as in
+    # M. Heni, H. Loewen, Phys. Rev. E 60, 7057 (1999).
+    radius = 0.4
+    tension = wall_tension([radius] * 3, 3 * 4 / 3 * math.pi * radius**3 / phi)
+    closed = -9 / (2 * math.pi) * phi**2 * (1 + phi) / (1 - phi) ** 3
+    assert tension == pytest.approx(closed / (2 * radius) ** 2, rel=1e-12)
+
+
 def test_pressure_on_walls():
     side, n = 20.0, 500
     # Spheres that are hardly there are an ideal gas.
@@ -72,7 +86,7 @@ def test_pressure_on_walls():
         (lambda: carnahan_starling(-0.1), "packing_fraction is -0.1"),
         (lambda: carnahan_starling(0.5), r"is 0\.5; above 0\.494 hard spheres freeze"),
         (lambda: carnahan_starling(math.nan), "packing_fraction is nan"),
-        (lambda: bmcsl([0.5] * 10, 10), r"is 0\.5236; above 0\.494"),
+        (lambda: bmcsl([0.5] * 10, 10), r"is 0\.523599; above 0\.494"),
         (lambda: bmcsl([0.5, 0.0], 10), "above 0 for each sphere"),
         (lambda: bmcsl([], 10), "one sphere at least"),
         (lambda: bmcsl([0.5], 0), "volume is 0"),
@@ -84,3 +98,60 @@ def test_outside_their_range_they_refuse(call, sentence):
     with pytest.raises(carom.InputError, match=sentence):
         call()
     assert carnahan_starling(FREEZING) > 12
+
+
+TABLES = (Path(__file__).parents[2] / "docs" / "theory.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", theory.formulas())
+def test_each_formula_is_public_and_in_the_documents_with_its_range_and_source(name):
+    function = getattr(theory, name)
+    known = theory.about(name)
+    assert theory.about(function) is known
+    assert name in theory.__all__
+    assert re.fullmatch(r"\S.+\.", known.summary)
+    row = next(line for line in TABLES.splitlines() if re.match(rf"\|.*`{name}`.*\|.*\|.*\|", line))
+    row = re.sub("\u2212", "-", row)
+    plain = inspect.getdoc(function)
+    for doi in re.findall(r"doi:(\S+[^\s;,.])", known.source):
+        assert f"https://doi.org/{doi}" in row
+        assert doi in plain or re.search(r"[Ss]ee\s`\w+`", plain)
+    for which in ("packing_fraction", "floor_packing_fraction"):
+        if which in known.ranges:
+            assert f"{known.ranges[which].high:.4g}" in row
+            assert not known.ranges[which].far or f"{known.ranges[which].far[1]:g})" in row
+    if "restitution" in known.ranges and name != "rough_ratio":  # whose row says "the same"
+        assert f"e {known.ranges['restitution'].low:g} to 1" in row
+        assert ("stretched: from 0" in row) == bool(known.ranges["restitution"].far)
+
+
+def test_every_function_is_a_formula():
+    functions = {n for n in theory.__all__ if inspect.isfunction(getattr(theory, n))}
+    assert functions - {"about", "formulas"} == set(theory.formulas())
+
+
+def test_ranges_are_what_is_refused():
+    known = theory.about(carnahan_starling)
+    allowed = known.ranges["packing_fraction"]
+    assert (allowed.low, allowed.high, allowed.far) == (0, FREEZING, (0, 0.64))
+    assert carnahan_starling(allowed.high) > 12
+    with pytest.raises(carom.InputError):
+        carnahan_starling(np.nextafter(allowed.high, 1))
+    with pytest.raises(carom.InputError, match=r"is 0\.4940000000000000\d+; above"):
+        carnahan_starling(np.nextafter(allowed.high, 1))
+    with pytest.raises(TypeError):
+        known.ranges["packing_fraction"] = allowed
+
+
+def test_ranges_in_words():
+    words = [str(theory.about("few_speed_pdf").ranges[name]) for name in ("speed", "energy")]
+    assert words == ["at least 0", "above 0"]
+    assert str(theory.about("maxwell_component_pdf").ranges["velocity"]) == "any number"
+    assert str(theory.about("self_diffusion").ranges["packing_fraction"]) == "0 (excluded) to 0.494"
+
+
+def test_a_misspelt_formula():
+    with pytest.raises(carom.CaromError, match="did you mean 'carnahan_starling'"):
+        theory.about("carnahan_sterling")
+    with pytest.raises(carom.CaromError, match="no formula 'sqrt'"):
+        theory.about(math.sqrt)

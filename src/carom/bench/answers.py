@@ -8,7 +8,7 @@ import numpy as np
 from carom.bench.cases import Case
 from carom.errors import RunError
 from carom.state import State
-from carom.theory import carnahan_starling
+from carom.theory import carnahan_starling, collision_rate
 from carom.world import World
 
 #: Where each seeded run is after its warm-up, or after one repetition if it has none: collisions
@@ -102,20 +102,6 @@ def assert_kept(case: Case, drift: float, overlap: float, collisions: int) -> No
         raise RunError(msg)
 
 
-def enskog(packing_fraction: float, temperature: float) -> float:
-    """Collisions per sphere and time in a fluid with diameter and mass 1: 24 phi g sqrt(T/pi).
-
-    g = (Z - 1)/(4 phi) is the value of the pair distribution at contact, so this measures the
-    compressibility factor Z.
-
-    References
-    ----------
-    S. Chapman, T. G. Cowling, *The Mathematical Theory of Non-Uniform Gases*, 3rd ed. (1970),
-    ch. 16; Z by N. F. Carnahan, K. E. Starling, see `carom.theory.carnahan_starling`.
-    """
-    return 6 * (carnahan_starling(packing_fraction) - 1) * math.sqrt(temperature / math.pi)
-
-
 def rate(case: Case, state: State, before: int, collisions: int, time: float) -> Rate | None:
     """Compare how often spheres collided with theory; None where there is none.
 
@@ -138,7 +124,9 @@ def rate(case: Case, state: State, before: int, collisions: int, time: float) ->
         return None
     assert case.packing_fraction is not None
     kinetic = 0.5 * float(np.sum(state.velocity**2))
-    expected = enskog(case.packing_fraction, 2 * kinetic / (3 * case.n - 3))
+    temperature = 2 * kinetic / (3 * case.n - 3)
+    # Spheres of the cases have diameter and mass 1.
+    expected = collision_rate(case.packing_fraction, temperature, equation=carnahan_starling)
     measured = 2 * collisions / case.n / time
     error = SCATTER / math.sqrt(collisions)
     forgets = OLD if case.packing_fraction < DENSE else 10 * OLD

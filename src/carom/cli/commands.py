@@ -16,6 +16,8 @@ from carom.cli import report
 from carom.cli.benching import bench
 from carom.cli.comparing import compare as compare_both
 from carom.cli.comparing import side_by_side
+from carom.cli.observing import as_data as observed_data
+from carom.cli.observing import observables, sheets, tables
 from carom.cli.running import as_data, execute, goal, summary
 from carom.cli.sketching import sketch
 from carom.cli.source import parsed, source, whole
@@ -193,6 +195,10 @@ def run(
     ] = None,
     method: Method = "exact",
     tick: Tick = None,
+    observe: Annotated[
+        str | None,
+        typer.Option(metavar="A,B", help="What to measure: compressibility, msd ...; or list."),
+    ] = None,
     seed: Seed = None,
     json: Json = False,
     quiet: Quiet = False,
@@ -208,15 +214,20 @@ def run(
         collisions=whole("collisions", collisions),
         events=whole("events", events),
     )
+    observed = observables(observe)
     sim = found.simulation(method, parsed("tick", tick))
     start = sim.state
-    outcome = execute(sim, aim, quiet=quiet or json, label=found.name)
+    outcome = execute(sim, aim, quiet=quiet or json, label=found.name, observe=[*observed.values()])
+    results = tables(observed)
     if json:
-        report.write_json(as_data(sim, found, outcome))
+        data = as_data(sim, found, outcome)
+        report.write_json({**data, "observed": observed_data(results)} if observed else data)
     else:
         if found.name == "phase-2" and not quiet:
             _print_story(start, sim)
         report.output().print(summary(sim, found, aim, outcome))
+        for part in sheets(results):
+            report.output().print(part)
     if not outcome.complete:
         raise typer.Exit(INTERRUPTED)
 

@@ -1,7 +1,7 @@
 """``carom run``: a progress bar while it runs, a table when it is done."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +13,7 @@ import carom
 from carom.cli import report
 from carom.cli.source import Source
 from carom.errors import InputError
+from carom.observe import Observable
 from carom.simulation import Simulation
 
 #: Without a goal a scene runs for what passes in these seconds at speed 1.
@@ -64,7 +65,9 @@ class Outcome:
     complete: bool
 
 
-def execute(sim: Simulation, aim: Goal, *, quiet: bool, label: str) -> Outcome:
+def execute(
+    sim: Simulation, aim: Goal, *, quiet: bool, label: str, observe: Sequence[Observable] = ()
+) -> Outcome:
     """Run with a progress bar on standard error, if somebody looks at it."""
     console = report.notes()
     with Progress(
@@ -88,7 +91,7 @@ def execute(sim: Simulation, aim: Goal, *, quiet: bool, label: str) -> Outcome:
         try:
             sim.run(duration=0)  # builds the engine, so that the clock measures collisions only
             begin = time.perf_counter()
-            sim.run(**{aim.name: aim.value}, progress=show)
+            sim.run(**{aim.name: aim.value}, progress=show, observe=observe)
         except KeyboardInterrupt:
             return Outcome(time.perf_counter() - begin, complete=False)
         return Outcome(time.perf_counter() - begin, complete=True)

@@ -1,0 +1,82 @@
+"""Measuring while time runs: numbers with error bars, beside what theory says of them.
+
+Give observables to `carom.Simulation.run` with ``observe=``; ask each for its `result`.
+
+Examples
+--------
+>>> import carom
+>>> from carom import observe, theory
+>>> sim = carom.Simulation(carom.scenes.fluid(n=500, packing_fraction=0.45, seed=1))
+>>> sim.run(collisions=100 * len(sim))
+>>> z = observe.Compressibility()
+>>> sim.run(collisions=200_000, observe=z)
+>>> abs(z.result().deviation(theory.carnahan_starling(0.45))) < 4
+True
+"""
+
+from carom.observe.batch import Batch, Moment
+from carom.observe.blocking import Settling, blocking, settling
+from carom.observe.energy import Energy, MaxOverlap, Temperature
+from carom.observe.estimate import Estimate
+from carom.observe.flights import FreePath, FreeTime
+from carom.observe.lags import MSD, VACF, Diffusion
+from carom.observe.observable import Observable
+from carom.observe.own import observable
+from carom.observe.pressure import Compressibility, PressureTensor, WallPressure
+from carom.observe.rates import CollisionRate, CollisionsPerSphere
+from carom.observe.space import RDF, DensityProfile, TemperatureProfile
+from carom.observe.speeds import HFunction, SpeedDistribution
+from carom.observe.table import Table
+
+#: All that can be measured, as ``carom run --observe`` calls it.
+OBSERVABLES: dict[str, type[Observable]] = {
+    "collision-rate": CollisionRate,
+    "collisions-per-sphere": CollisionsPerSphere,
+    "compressibility": Compressibility,
+    "density-profile": DensityProfile,
+    "diffusion": Diffusion,
+    "energy": Energy,
+    "free-path": FreePath,
+    "free-time": FreeTime,
+    "h-function": HFunction,
+    "max-overlap": MaxOverlap,
+    "msd": MSD,
+    "pressure-tensor": PressureTensor,
+    "rdf": RDF,
+    "speed-distribution": SpeedDistribution,
+    "temperature": Temperature,
+    "temperature-profile": TemperatureProfile,
+    "vacf": VACF,
+    "wall-pressure": WallPressure,
+}
+
+__all__ = [
+    "MSD",
+    "OBSERVABLES",
+    "RDF",
+    "VACF",
+    "Batch",
+    "CollisionRate",
+    "CollisionsPerSphere",
+    "Compressibility",
+    "DensityProfile",
+    "Diffusion",
+    "Energy",
+    "Estimate",
+    "FreePath",
+    "FreeTime",
+    "HFunction",
+    "MaxOverlap",
+    "Moment",
+    "Observable",
+    "PressureTensor",
+    "Settling",
+    "SpeedDistribution",
+    "Table",
+    "Temperature",
+    "TemperatureProfile",
+    "WallPressure",
+    "blocking",
+    "observable",
+    "settling",
+]
