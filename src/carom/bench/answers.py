@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.bench.cases import Case
+from carom.bench.cases import DENSE, Case
 from carom.errors import RunError
 from carom.state import State
 from carom.theory import carnahan_starling, collision_rate
@@ -50,8 +50,8 @@ DEEPEST = 1e-12
 SCATTER = 1.2
 #: Relative: of Carnahan's and Starling's formula, and of a fluid that may remember its lattice.
 THEORY, YOUNG = 0.004, 0.04
-#: Collisions per sphere after which it does not; a fluid this dense takes ten times as many.
-OLD, DENSE = 10, 0.45
+#: Collisions per sphere after which it does not; a dense fluid takes ten times as many.
+OLD = 10
 #: Spheres below which the fluid is not the theory's, which is that of infinitely many.
 MANY = 1_000
 #: Variance over mean of the number of spheres in cells of `CELL` diameters above which they are
