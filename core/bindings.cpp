@@ -146,8 +146,7 @@ NB_MODULE(_core, m) {
              nb::sig("def state(self) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64], "
                      "NDArray[numpy.int32], NDArray[numpy.uint32], NDArray[numpy.uint8]]"),
              "(position, velocity, image, count, resting) at `time`.")
-        .def("take_log", &take_log,
-             nb::sig("def take_log(self) -> NDArray[numpy.uint8]"),
+        .def("take_log", &take_log, nb::sig("def take_log(self) -> NDArray[numpy.uint8]"),
              "Records since the last call, as bytes.")
         .def("max_overlap", &Engine::max_overlap, "Deepest overlap met, in contact distances.")
         .def("check", &Engine::check, "Raises if two structures contradict one another.")

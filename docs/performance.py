@@ -62,9 +62,14 @@ def machine(data):
     )
 
 
+def series(data):
+    """Fluids of three sizes or more at one packing fraction; others only are held against."""
+    return {phi: rows for phi, rows in fluids(data).items() if len(rows) > 2}
+
+
 def speed(data):
     """Million collisions per second over N and packing fraction."""
-    grid = {phi: rows for phi, rows in fluids(data).items() if len(rows) > 1}
+    grid = series(data)
     sizes = sorted({row["n"] for rows in grid.values() for row in rows})
     lines = []
     for n in sizes:
@@ -197,12 +202,12 @@ def line(axes, rows, values, label, color):
 
 def pictures(data):
     """Draw all."""
-    by_phi = {phi: rows for phi, rows in fluids(data).items() if len(rows) > 1}
+    by_phi = series(data)
     rows = [row for row in by_phi[SCALING] if row["n"] >= 1000]
     it = data["machine"]
 
     def draw_speed(axes):
-        for (phi, some), color in zip(by_phi.items(), COLORS, strict=False):
+        for (phi, some), color in zip(by_phi.items(), COLORS, strict=True):
             some = [row for row in some if row["n"] >= 1000]
             speeds = [1e3 / row["median_nanoseconds"] for row in some]
             line(axes, some, speeds, f"φ = {phi}", color)
