@@ -226,7 +226,7 @@ private:
 
     const Kernels* kernels_;
     bool glancing_ = false;  // one image: pairs are looked through at a glance
-    Lens lens_;
+    Lens lens_{};
     double span_ = 1;           // for such a time: an epoch, longer where little happens
     double focused_until_ = 0;  // glances are too old after that
     double doubt_ = 0;          // a bound is rarely this much earlier than what it bounds
