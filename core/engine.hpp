@@ -248,7 +248,7 @@ private:
     double common_ = 0, giant_ = 0;  // radius the cells are made for; above which one is a giant
     double cell_ = 0;                // width of the smallest cells
     bool sort_ = true;
-    bool far_ = false;  // neighbours are far away in memory: they do not all fit into the cache
+    bool far_ = false;     // neighbours are far away in memory: they do not all fit into the cache
     bool at_hand_ = true;  // all fit into the cache next to the processor
     Rows rows_;
     Cells cells_;
