@@ -246,10 +246,13 @@ class TestMutualDiffusion:
         moved = after.position + after.image * sides - before.position
         return made.moments()["moment"][-1], moved, msd.result()["msd"][0]
 
-    def test_the_way_from_one_kind_to_the_other(self):
-        moment, moved, _ = self.measured((1, 2))
-        apart = moved[[1, 2]].mean(axis=0) - moved[[0, 3]].mean(axis=0)
-        assert moment == pytest.approx(4 / 4 * (apart @ apart) / 6, rel=1e-9)
+    @pytest.mark.parametrize("chosen", [(1, 2), (3,)])
+    def test_the_way_from_one_kind_to_the_other(self, chosen):
+        moment, moved, _ = self.measured(chosen)
+        others = [k for k in range(4) if k not in chosen]
+        apart = moved[list(chosen)].mean(axis=0) - moved[others].mean(axis=0)
+        scale = len(chosen) * len(others) / 4  # N x_1 x_2
+        assert moment == pytest.approx(scale * (apart @ apart) / 6, rel=1e-9)
 
     def test_it_is_self_diffusion_when_only_names_differ(self):
         # The mean over all ways to name them is exact, but for N/(N - 1): displacements about the
@@ -275,3 +278,30 @@ def test_the_table_and_its_picture():
     slope = np.diff(moments["moment_theory"]) / np.diff(moments["time"])
     assert (np.diff(slope) > 0).all()
     assert slope[-1] == pytest.approx(table["value_theory"][0], rel=1e-4)
+
+
+def test_ficks_coefficient_comes_with_theory():
+    sim = carom.Simulation(carom.scenes.fluid(n=108, packing_fraction=0.3, seed=2))
+    sim.radius = np.where(np.arange(108) < 54, 0.5, 0.4)
+    made = observe.MutualDiffusion()
+    sim.run(collisions=20_000, observe=made)
+    table = made.result()
+    gamma = carom.theory.thermodynamic_factor([0.5, 0.4], 108 * math.pi / 6 / 0.3, 54)
+    assert list(table["quantity"]) == ["Maxwell, Stefan", "Fick"]
+    for column in ("value", "value_theory"):
+        assert table[column][1] / table[column][0] == pytest.approx(gamma, rel=1e-12)
+    assert table["ratio"][0] == pytest.approx(table["ratio"][1])
+    assert f"thermodynamic factor {gamma:.4g}, BMCSL" in table.theory
+
+
+@pytest.mark.parametrize(
+    ("make", "least"), [(observe.ShearViscosity, 9), (observe.BulkViscosity, 18)]
+)
+def test_too_short_a_run(make, least):
+    sim, made = carom.Simulation(SHORT), make(between=(3, 9))
+    sim.run(duration=0.1, observe=made)
+    for result in (made.result, made.moments, made.plot):
+        with pytest.raises(carom.InputError, match=f"a run of {least} at least, and has seen 0.1"):
+            result()
+    sim.run(until=float(least), observe=made)
+    assert len(made.result()) == 1

@@ -144,7 +144,6 @@ def test_nothing_measured_yet(make):
         (observe.MSD(at=[5]), "MSD has seen no sample in 0.1: the first is due after 5"),
         (observe.VACF(at=[5]), "no sample"),
         (observe.Diffusion(between=(0.05, 5)), "needs a run of 5 at least, and has seen 0.1"),
-        (observe.ShearViscosity(between=(3, 9)), "needs a run of 9 at least, and has seen 0.1"),
         (observe.Temperature(every=5), "no sample"),
         (observe.RDF(every=5), "no sample"),
         (observe.PressureTensor(every=5), "no sample"),

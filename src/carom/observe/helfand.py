@@ -193,19 +193,22 @@ class Helfand(Observable):
             self._said if known is None else known.label,
         )
 
+    def _rows(self, found: Estimate) -> dict[str, tuple[Estimate, Theory | None]]:
+        """Rows of the result, of which the first is the coefficient."""
+        known = self._kinetic
+        return {self._title.lower(): (found, Theory(known.value, known.label) if known else None)}
+
     def result(self) -> Table:
         """The coefficient so far."""
         self.last()
         early, late = self._early * self._step, LAGS * self._step
         weights = np.zeros(LAGS)
         weights[[self._early - 1, -1]] = -1 / (late - early), 1 / (late - early)
-        found, known = self._moment(weights), self._kinetic
-        expected = Theory(known.value, known.label) if known else None
-        table = Table.of_estimates(self._title, {self._title.lower(): (found, expected)})
+        table = Table.of_estimates(self._title, self._rows(self._moment(weights)))
         columns = dict(table.columns)
-        if known:
-            columns["ratio"] = columns["value"] / known.value
-            columns["ratio_error"] = columns["value_error"] / known.value
+        if self._kinetic is not None:
+            columns["ratio"] = columns["value"] / columns["value_theory"]
+            columns["ratio_error"] = columns["value_error"] / columns["value_theory"]
         notes = (f"slope between lags of {early:.4g} and {late:.4g}", *table.notes)
         said = table.theory or self._said
         return Table(table.title, columns, {"value": self._unit}, said, notes)

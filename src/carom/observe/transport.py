@@ -7,12 +7,15 @@ import numpy as np
 from carom import mechanics, theory
 from carom.errors import InputError
 from carom.observe.batch import Moment
+from carom.observe.estimate import Estimate
 from carom.observe.fluid import UP_TO, Fluid, in_range, is_gas
 from carom.observe.helfand import Helfand, Kinetic
 from carom.observe.kinds import one_kind
+from carom.observe.table import Theory
 from carom.state import Floats, State
 
 ENSKOG = f"Enskog, {UP_TO}"
+MEASURED = "Maxwell, Stefan"
 #: From xx, yy, zz, xy, xz, yz to five equivalent components without trace.
 SHEAR = np.zeros((6, 5))
 SHEAR[[3, 4, 5], [0, 1, 2]] = 1
@@ -141,18 +144,18 @@ class ThermalConductivity(Helfand):
 
 
 class MutualDiffusion(Helfand):
-    """Coefficient of Maxwell and Stefan of the mutual diffusion of two kinds of spheres.
+    """Coefficients of Maxwell and Stefan, and of Fick, of mutual diffusion of two kinds of spheres.
 
     Kinds differ by species, radius or mass. With the numbers N_1 and N_2, the mole fractions x
     and the mean positions R_1 and R_2 of each kind, unwrapped ::
 
         D_12 = N x_1 x_2 d<|R_1(t) - R_2(t) - R_1(0) + R_2(0)|^2>/6 dt
 
-    Onsager's coefficient about the centre of mass is Lambda_11 = (x_1/x_2) w_2^2 D_12 with the
-    mass fraction w. Fick's coefficient is D_12 times the thermodynamic factor, 1 for spheres of
-    one size. Spheres that differ in species alone have the D_12 of self-diffusion, that of
-    `Diffusion` in this box. No size correction. Theory: `carom.theory.mutual_diffusion`. Result:
-    `Table`, length^2/time.
+    That is measured, and with it Onsager's coefficient about the centre of mass, Lambda_11 =
+    (x_1/x_2) w_2^2 D_12 with the mass fraction w. Fick's is D_12 times
+    `carom.theory.thermodynamic_factor`, which is theory, and 1 for spheres of one size. Spheres
+    that differ in species alone have the D_12 of self-diffusion, that of `Diffusion` in this box.
+    No size correction. Theory: `carom.theory.mutual_diffusion`. Result: `Table`, length^2/time.
 
     Parameters
     ----------
@@ -193,6 +196,18 @@ class MutualDiffusion(Helfand):
         share = self._count / self._count.sum()
         memory = value * float(self._mass.prod() / (share @ self._mass)) / self._kT
         return Kinetic(0.0, value, memory, f"Enskog, first order, {UP_TO}")
+
+    def _rows(self, found: Estimate) -> dict[str, tuple[Estimate, Theory | None]]:
+        known = self._kinetic
+        if known is None:
+            return {MEASURED: (found, None)}
+        gamma = theory.thermodynamic_factor(self._radius, self._volume, self._count)
+        fick = Estimate(gamma * found.value, gamma * found.error, found.n_independent)
+        label = f"{known.label}; thermodynamic factor {gamma:.4g}, BMCSL"
+        return {
+            MEASURED: (found, Theory(known.value, label)),
+            "Fick": (fick, Theory(gamma * known.value, label)),
+        }
 
     def _natural(self, moment: Moment) -> tuple[float, float]:
         if self._kinetic is None:
