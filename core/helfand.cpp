@@ -1,6 +1,9 @@
 // How the moments of Helfand grow.
 #include "helfand.hpp"
 
+#include <cstring>
+#include <stdexcept>
+
 namespace carom {
 
 Helfand::Helfand(const std::vector<Vec3>& velocity, const std::vector<double>& mass,
@@ -18,17 +21,23 @@ Helfand::Helfand(const std::vector<Vec3>& velocity, const std::vector<double>& m
     }
 }
 
-void Helfand::advance(const Record* records, size_t n, const double* times, size_t m, double* out) {
+void Helfand::advance(const void* records, size_t n, const double* times, size_t m, double* out) {
     size_t asked = 0;
     const auto answer = [&] {
         wait(times[asked]);
         for (size_t k = 0; k < kMoments; ++k) out[asked * kMoments + k] = moment_[k];
         ++asked;
     };
+    const auto there = [this](int32_t i) { return i >= 0 && size_t(i) < spheres_.size(); };
+    const auto* bytes = static_cast<const unsigned char*>(records);
     for (size_t k = 0; k < n; ++k) {
-        while (asked < m && times[asked] < records[k].time) answer();
-        wait(records[k].time);
-        collide(records[k]);
+        Record record;
+        std::memcpy(&record, bytes + k * sizeof(Record), sizeof(Record));
+        if (!there(record.i) || !there(record.j))
+            throw std::invalid_argument("a record of something else than two spheres");
+        while (asked < m && times[asked] < record.time) answer();
+        wait(record.time);
+        collide(record);
     }
     while (asked < m) answer();
 }

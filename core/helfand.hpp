@@ -21,11 +21,10 @@ public:
     Helfand(const std::vector<Vec3>& velocity, const std::vector<double>& mass,
             const std::vector<double>& radius, const std::vector<double>& charge, double time);
 
-    size_t size() const { return spheres_.size(); }
-
-    // Takes collisions between spheres in the order of time and writes the moments at rising
-    // `times`, kMoments for each. A time comes before the collisions that are later than it.
-    void advance(const Record* records, size_t n, const double* times, size_t m, double* out);
+    // Takes n records of collisions between spheres, as bytes, in the order of time, and writes the
+    // moments at m rising `times`, kMoments for each. A time comes before all collisions that are
+    // later than it. Throws std::invalid_argument at a record of anything else.
+    void advance(const void* records, size_t n, const double* times, size_t m, double* out);
 
 private:
     struct alignas(64) Carrier {

@@ -1,4 +1,6 @@
 // What fluxes add up to, for two spheres, by hand.
+#include <stdexcept>
+
 #include "../helfand.hpp"
 #include "check.hpp"
 
@@ -15,6 +17,12 @@ TEST(what_a_head_on_collision_adds_up_to) {
     CHECK(later[0] == 5 + 2);    // the flux 2, and the impulse 2 across one diameter
     CHECK(later[6] == 0);        // energies come and go alike
     CHECK(later[9] == 2 - 0.5);  // the first carries its charge there and back
-    moments.advance(nullptr, 0, times, 0, nullptr);
-    CHECK(moments.size() == 2);
+    bool refused = false;
+    const Record wall{3, 0, -1, {1, 0, 0}};
+    try {
+        moments.advance(&wall, 1, times, 0, out);
+    } catch (const std::invalid_argument&) {
+        refused = true;
+    }
+    CHECK(refused);
 }

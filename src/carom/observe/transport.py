@@ -15,7 +15,7 @@ from carom.observe.table import Theory
 from carom.state import Floats, State
 
 ENSKOG = f"Enskog, {UP_TO}"
-MEASURED = "Maxwell, Stefan"
+MEASURED = "Maxwell-Stefan"
 #: From xx, yy, zz, xy, xz, yz to five equivalent components without trace.
 SHEAR = np.zeros((6, 5))
 SHEAR[[3, 4, 5], [0, 1, 2]] = 1
