@@ -4,8 +4,8 @@ Enskog's theory takes the velocities of two spheres that meet to know nothing of
 is exact in a dilute gas; in a dense one it errs, in a known way. Molecular dynamics over Enskog::
 
     n sigma^3   diffusion   shear viscosity   bulk viscosity   conductivity
-    0.5         1.25        0.99              0.99             0.99
-    0.8         1.00        1.18              1.09             1.02
+    0.5         1.25        0.99              1.00             1.00
+    0.8         1.00        1.17              1.08             1.02
 
 (within 0.01, 0.01, 0.02, 0.01; N = 1372, and diffusion is that of a periodic cube of this N, in
 which it is some percent too low: see `finite_size_diffusion`). The factors 1.01..., to all orders
