@@ -9,13 +9,16 @@ from hypothesis import strategies as st
 
 import carom
 from carom.theory import (
+    bmcsl,
     bulk_viscosity,
     carnahan_starling,
     collision_rate,
     finite_size_diffusion,
+    mutual_diffusion,
     self_diffusion,
     shear_viscosity,
     thermal_conductivity,
+    thermodynamic_factor,
 )
 
 
@@ -98,3 +101,65 @@ def test_what_a_small_cube_lacks():
 def test_refusals(call, sentence):
     with pytest.raises(carom.InputError, match=sentence):
         call()
+
+
+class TestMutualDiffusion:
+    def test_equal_spheres_diffuse_as_one_does(self):
+        n, kT, m, radius = np.array([300, 100]), 2.0, 3.0, 0.7
+        volume = 400 * 4 / 3 * math.pi * radius**3 / 0.3
+        alone = self_diffusion(0.3, kT, m, radius, equation=carnahan_starling) / 1.018954
+        assert mutual_diffusion([radius] * 2, volume, n, m, kT) == pytest.approx(alone, rel=1e-12)
+
+    def test_a_light_point_among_rare_fixed_spheres(self):
+        """Lorentz: D = l <v>/3, which the first order of Sonine falls short of by 9 pi/32."""
+        count, mass, kT = [1e-6, 1000], [1e-9, 1], 1.0
+        path = 1e6 / (1000 * math.pi * 0.5**2)
+        lorentz = path * math.sqrt(8 * kT / (math.pi * mass[0])) / 3
+        found = mutual_diffusion([1e-9, 0.5], 1e6, count, mass, kT)
+        assert found == pytest.approx(lorentz * 9 * math.pi / 32, rel=2e-3)
+
+    @pytest.mark.parametrize("formula", [mutual_diffusion, thermodynamic_factor])
+    @pytest.mark.parametrize("radius", [[0.5], [0.5, 0.4, 0.3]])
+    def test_two_kinds(self, formula, radius):
+        message = f"radius must hold two numbers, one for each kind, not {len(radius)}"
+        with pytest.raises(carom.InputError, match=message):
+            formula(radius, 500)
+        with pytest.raises(carom.InputError, match="packing_fraction"):
+            formula([0.5, 0.5], 1.0)
+
+
+class TestThermodynamicFactor:
+    def test_names_alone_make_an_ideal_mixture(self):
+        assert thermodynamic_factor([0.5, 0.5], 500, [300, 100]) == pytest.approx(1, rel=1e-12)
+
+    def test_a_rare_mixture(self):
+        """1 - 2 x_1 x_2 n (2 B_12 - B_11 - B_22) to first order."""
+        n, share = 400 / 5e5, 0.25 * 0.75
+        excess = 2 * math.pi / 3 * (2 * 0.75**3 - 1 - 0.5**3)
+        found = thermodynamic_factor([0.5, 0.25], 5e5, [100, 300])
+        assert found - 1 == pytest.approx(-2 * share * n * excess, rel=2e-3)
+
+    def test_it_is_that_of_the_equation_of_state(self):
+        """The free energy by integrating Z - 1 over density, and its derivatives by differences."""
+        radius, at = [0.5, 0.3], np.array([0.35, 0.6])
+        place, weight = np.polynomial.legendre.leggauss(12)
+        place, weight = (place + 1) / 2, weight / 2
+
+        def free(n):
+            excess = [(bmcsl(radius, 1.0, n * part) - 1) / part for part in place]
+            return float(n @ np.log(n) + n.sum() * (weight @ excess))
+
+        h, steps = 1e-3, 1e-3 * np.eye(2)
+        second = [
+            [
+                (free(at + a + b) - free(at + a - b) - free(at - a + b) + free(at - a - b))
+                / 4
+                / h**2
+                for b in steps
+            ]
+            for a in steps
+        ]
+        expected = at.prod() * at.sum() * np.linalg.det(second) / (at @ second @ at)
+        found = thermodynamic_factor(radius, 1.0, at)
+        assert found > 1.05
+        assert found == pytest.approx(expected, rel=1e-4)

@@ -180,6 +180,148 @@ def pair_rates(
     return result
 
 
+@formula(
+    f"{CHAPMAN_COWLING}, ch. 14 and 16; contact values: {BMCSL}",
+    packing_fraction=FLUID,
+    mass=POSITIVE,
+    temperature=POSITIVE,
+)
+def mutual_diffusion(
+    radius: ArrayLike,
+    volume: float,
+    count: ArrayLike = 1.0,
+    mass: Numbers = 1.0,
+    temperature: float = 1.0,
+) -> float:
+    """Coefficient D_12 of the mutual diffusion of two kinds of hard spheres, by Enskog.
+
+    To first order of Sonine's polynomials, with n = n_1 + n_2, s = (sigma_1 + sigma_2)/2, the
+    reduced mass mu and `bmcsl_contact`::
+
+        D_12 = 3/(8 n s^2 chi_12) sqrt(kT/(2 pi mu))
+
+    It is the coefficient of Maxwell and Stefan; Fick's is that times the thermodynamic factor,
+    which is 1 in a dilute gas and between spheres of one size.
+
+    Parameters
+    ----------
+    radius, volume, count
+        See `bmcsl_contact`, of two kinds.
+    mass : float or (2,) array_like
+        m of either kind.
+    temperature : float
+        kT.
+
+    Returns
+    -------
+    float
+        Length^2/time. In a dilute gas too low by 1.9 percent for equal spheres, and by up to 12
+        for a few light spheres among heavy ones, where the exact one is 32/(9 pi) times as large.
+
+    Raises
+    ------
+    InputError
+        See `pair_rates`; or if there are not two kinds.
+
+    References
+    ----------
+    S. Chapman, T. G. Cowling, *The Mathematical Theory of Non-Uniform Gases*, 3rd ed. (1970),
+    ch. 14 and 16.
+
+    Examples
+    --------
+    >>> round(mutual_diffusion([0.5, 0.25], 500, count=200, mass=[1, 0.125]), 4)
+    0.557
+    """
+    contact = bmcsl_contact(radius, volume, count)
+    r = _two("radius", radius)
+    density = float(np.sum(per_kind("count", count, r))) / volume
+    between = density * float(r.sum() ** 2 * contact[0, 1])
+    spread = float(np.sum(temperature / per_kind("mass", mass, r)))  # kT/mu
+    return 3 / (8 * between) * math.sqrt(spread / (2 * math.pi))
+
+
+@formula(
+    "J. G. Kirkwood, F. P. Buff, J. Chem. Phys. 19, 774 (1951), doi:10.1063/1.1748352; free "
+    f"energy: {BMCSL}",
+    packing_fraction=FLUID,
+)
+def thermodynamic_factor(radius: ArrayLike, volume: float, count: ArrayLike = 1.0) -> float:
+    """Factor Gamma between the coefficients of mutual diffusion of Fick and of Maxwell and Stefan.
+
+    Gamma = (x_1/kT) d mu_1/d x_1 at constant pressure and temperature, with the mole fraction x_1
+    and the chemical potential mu_1. With the free energy F of `bmcsl` it is ::
+
+        Gamma = n_1 n_2 n det M/(sum n_i M_ij n_j),  M_ij = d^2(F/(V kT))/(d n_i d n_j)
+
+    1 for an ideal mixture and for equal sizes; 0 where a mixture would part.
+
+    Parameters
+    ----------
+    radius, volume, count
+        See `bmcsl`, of two kinds.
+
+    Returns
+    -------
+    float
+        No unit.
+
+    Raises
+    ------
+    InputError
+        See `bmcsl`; or if there are not two kinds.
+
+    References
+    ----------
+    J. G. Kirkwood, F. P. Buff, J. Chem. Phys. 19, 774 (1951), doi:10.1063/1.1748352; see `bmcsl`.
+
+    Examples
+    --------
+    >>> round(thermodynamic_factor([0.5, 0.25], volume=500, count=200), 4)
+    1.152
+    """
+    zeta = moments(radius, volume, count)
+    FLUID.check("packing_fraction", zeta[3])
+    sigma = _two("radius", radius) * 2
+    n = per_kind("count", np.asarray(count, np.float64), sigma) / volume
+    slopes = math.pi / 6 * sigma ** np.arange(4)[:, None]  # d zeta_k/d n_i
+    second = np.diag(1 / n) + slopes.T @ _curvature(zeta) @ slopes
+    return float(n.prod() * n.sum() * np.linalg.det(second) / (n @ second @ n))
+
+
+def _curvature(zeta: Moments) -> Floats:
+    """Second derivatives by zeta of the excess free energy of `bmcsl` over V kT, (4, 4).
+
+    It is 6/pi times (b^3/c^2 - zeta_0) ln u + 3 a b/u + b^3/(c u^2), with a, b, c of zeta_1 to
+    zeta_3 and u = 1 - c.
+    """
+    zero, a, b, c = zeta
+    u = 1 - c
+    log = math.log1p(-c)
+    by = np.zeros((4, 4))
+    by[0, 3] = 1 / u
+    by[1, 2] = 3 / u
+    by[1, 3] = 3 * b / u**2
+    by[2, 2] = 6 * b / c * (log / c + 1 / u**2) / 2
+    by[2, 3] = 3 * a / u**2 - 3 * b**2 / c**2 * (2 * log / c + 1 / u + 1 / u**2 - 2 * c / u**3)
+    by[3, 3] = (
+        (zero - b**3 / c**2) / u**2
+        + 6 * a * b / u**3
+        + b**3 / c**3 * (6 * log / c + 4 / u + 2 / u**2 - 4 * c / u**3 + 6 * c**2 / u**4)
+    ) / 2
+    result: Floats = 6 / math.pi * (by + by.T)
+    return result
+
+
+def _two(name: str, values: ArrayLike) -> Floats:
+    """One number for each of two kinds."""
+    found = np.asarray(values, np.float64)
+    if found.shape != (2,):
+        msg = f"{name} must hold two numbers, one for each kind, not {found.size}"
+        raise InputError(msg)
+    return found
+
+
 def per_kind(name: str, value: Numbers, radius: ArrayLike) -> Floats:
     """A number for each kind of sphere, from one for all or one for each."""
     kinds = np.size(radius)

@@ -4,10 +4,10 @@ Enskog's theory takes the velocities of two spheres that meet to know nothing of
 is exact in a dilute gas; in a dense one it errs, in a known way. Molecular dynamics over Enskog::
 
     n sigma^3   diffusion   shear viscosity   bulk viscosity   conductivity
-    0.5         1.25        0.97              0.96             1.02
-    0.8         1.00        1.19              0.93             1.09
+    0.5         1.25        0.99              1.00             1.00
+    0.8         1.00        1.17              1.08             1.02
 
-(within 0.01, 0.04, 0.03, 0.05; N = 1372, and diffusion is that of a periodic cube of this N, in
+(within 0.01, 0.01, 0.02, 0.01; N = 1372, and diffusion is that of a periodic cube of this N, in
 which it is some percent too low: see `finite_size_diffusion`). The factors 1.01..., to all orders
 of Sonine's polynomials, are exact to the digits given.
 """
@@ -116,7 +116,7 @@ def shear_viscosity(
     Returns
     -------
     float or float64 array
-        Mass/(length time). Good to 3 percent to n sigma^3 = 0.5; 20 percent too low at 0.8.
+        Mass/(length time). Good to 2 percent to n sigma^3 = 0.5; 15 percent too low at 0.8.
 
     Raises
     ------
@@ -161,7 +161,7 @@ def bulk_viscosity(
     Returns
     -------
     float or float64 array
-        Mass/(length time). Some 5 percent too high from n sigma^3 = 0.5 to 0.8.
+        Mass/(length time). Good to 3 percent to n sigma^3 = 0.5; 8 percent too low at 0.8.
 
     Raises
     ------
@@ -206,8 +206,7 @@ def thermal_conductivity(
     Returns
     -------
     float or float64 array
-        1/(length time), as temperatures are energies. Good to 4 percent to n sigma^3 = 0.5;
-        9 percent too low at 0.8.
+        1/(length time), as temperatures are energies. Good to 2 percent to n sigma^3 = 0.8.
 
     Raises
     ------
