@@ -1,0 +1,126 @@
+"""Diffusion, and how it depends on the size of the periodic cube."""
+
+import math
+from functools import partial
+
+from carom import theory
+from carom.observe import Diffusion, Estimate
+from carom.simulation import Simulation
+from carom.validate import references as known
+from carom.validate.row import Check, Found
+from carom.validate.runs import fluid, scaled
+
+N = 1372
+ENSKOG = "Enskog, Lindenfeld and Shizgal 1979"
+YEH_HUMMER = "I.-C. Yeh, G. Hummer, J. Phys. Chem. B 108, 15873 (2004)"
+
+
+def diffusion(
+    n: int, density: float, duration: float, lags: tuple[float, float]
+) -> tuple[Simulation, Diffusion]:
+    """A fluid, and D of its own periodic cube."""
+    sim = fluid(n, density * math.pi / 6)
+    measured = Diffusion(between=lags)
+    sim.run(duration=duration, observe=measured)
+    return sim, measured
+
+
+def in_this_cube(measured: Diffusion) -> Estimate:
+    """D without the correction for size."""
+    return measured.result().estimate("value", 0)
+
+
+def against_dynamo(density: float, size: float) -> list[Found]:
+    """D between lags 5 and 30, as another program measured it."""
+    duration = 30.0 * max(16, round(20 * size))
+    sim, measured = diffusion(N, density, duration, (5.0, 30.0))
+    found = Found(f"fluid, nσ³ = {density:g}", N, sim.collisions)
+    number = known.DYNAMO_DIFFUSION[density]
+    found.against(
+        f"diffusion-{density:g}",
+        "D in this cube",
+        in_this_cube(measured),
+        number.value,
+        known.DYNAMO,
+        number.error,
+    )
+    if density == 0.5:
+        # The correction of theirs, from the same shear viscosity.
+        side = (N / density) ** (1 / 3)
+        shift = float(theory.finite_size_diffusion(side, known.DYNAMO_SHEAR[density].value))
+        infinite = measured.result().estimate("value", 1)
+        found.against(
+            f"diffusion-{density:g}-infinite",
+            "D, infinite",
+            infinite,
+            number.value + shift,
+            f"{known.DYNAMO}; {YEH_HUMMER}",
+            math.hypot(number.error, 0.02 * shift),
+        )
+    return [found]
+
+
+def by_size(size: float) -> list[Found]:
+    """D of a small and a large cube differ as the images of a sphere say."""
+    density, eta = 0.5, known.DYNAMO_SHEAR[0.5]
+    ways = []
+    shifts = []
+    met = 0
+    for n, windows in ((108, 300), (N, 40)):
+        sim, measured = diffusion(n, density, 20.0 * round(windows * size), (5.0, 20.0))
+        ways.append(in_this_cube(measured))
+        shifts.append(float(theory.finite_size_diffusion((n / density) ** (1 / 3), eta.value)))
+        met += sim.collisions
+    found = Found("fluid, nσ³ = 0.5, two cubes", 108, met)
+    expected = shifts[0] - shifts[1]
+    difference = Estimate(
+        ways[1].value - ways[0].value, math.hypot(ways[0].error, ways[1].error), 2
+    )
+    # The next term is of order (σ/L)^3; the viscosity is known to 1.5 percent.
+    note = "good to 4 %: next term, viscosity"
+    found.against(
+        "diffusion-size",
+        f"D(N = {N}) − D(108)",
+        difference,
+        expected,
+        YEH_HUMMER,
+        0.04 * expected,
+        note,
+    )
+    return [found]
+
+
+def dilute(size: float) -> list[Found]:
+    """D of a gas, which Enskog knows to a few percent."""
+    phi = 0.02
+    sim = fluid(N, phi, per_sphere=30)
+    free = float(theory.mean_free_time(phi))
+    measured = Diffusion(between=(12 * free, 40 * free))
+    sim.run(duration=40 * free * max(16, round(25 * size)), observe=measured)
+    found = Found(f"gas, φ = {phi:g}", N, sim.collisions)
+    side = float(sim.world.period[0])
+    shift = float(theory.finite_size_diffusion(side, float(theory.shear_viscosity(phi))))
+    expected = float(theory.self_diffusion(phi))
+    found.against(
+        "diffusion-gas",
+        "D, infinite",
+        scaled(in_this_cube(measured), 1, shift),
+        expected,
+        ENSKOG,
+        0.02 * expected,
+        "good to 2 %",
+    )
+    return [found]
+
+
+def checks() -> list[Check]:
+    """All of this file."""
+    dense = [
+        Check(f"diffusion-{rho:g}", "diffusion", partial(against_dynamo, rho), seconds, 4)
+        for rho, seconds in ((0.5, 6.0), (0.8, 15.0))
+    ]
+    return [
+        *dense,
+        Check("diffusion-size", "diffusion", by_size, 8.0, 6),
+        Check("diffusion-gas", "diffusion", dilute, 3.0, 6),
+    ]
