@@ -6,13 +6,21 @@ from functools import partial
 import numpy as np
 
 from carom import place, theory
-from carom.observe import CollisionRate, Compressibility
+from carom.observe import (
+    RDF,
+    VACF,
+    CollisionRate,
+    CollisionsPerSphere,
+    Compressibility,
+    HFunction,
+    PressureTensor,
+)
 from carom.random_numbers import Random
 from carom.simulation import Simulation
 from carom.validate import references as known
 from carom.validate.references import EDMD_Z, FLUID_SIZE
 from carom.validate.row import Check, Found, Panel
-from carom.validate.runs import Impulses, count, fluid, scaled
+from carom.validate.runs import Impulses, count, fluid, of_blocks, scaled
 from carom.walls import Periodic
 
 N = 2000
@@ -61,6 +69,47 @@ def equation_of_state(phi: float, size: float) -> list[Found]:
             [phi],
             [0],
         )
+    )
+    return [found]
+
+
+def structure(size: float) -> list[Found]:
+    """What else there is to see in a fluid: each observable by a number it must give."""
+    phi = 0.3
+    sim = fluid(N, phi)
+    omega, z = float(theory.collision_rate(phi)), expected(N, phi)[0]
+    tensor, memory = PressureTensor(), VACF(at=[0.1 / omega])
+    boltzmann, pairs, counts = HFunction(50 / omega), RDF(reach=5.0), CollisionsPerSphere()
+    collisions = count(size, 2e6)
+    sim.run(collisions=collisions, observe=[tensor, memory, boltzmann, pairs, counts])
+    found = Found(f"fluid, φ = {phi:g}", N, collisions)
+    pressure = tensor.result()
+    ideal = phi * 6 / math.pi  # n kT
+    parts = [pressure.estimate("pressure", k) for k in range(6)]
+    # Spheres at rest together lack the motion of one of N.
+    for k in (0, 2):
+        found.against(
+            f"fluid-P{'xxyyzz'[2 * k : 2 * k + 2]}",
+            f"pressure {'xyz'[k]}{'xyz'[k]}/(n kT)",
+            scaled(parts[k], 1 / ideal),
+            z - 1 / N,
+            EQUATION,
+        )
+    found.against("fluid-Pxy", "pressure xy/(n kT)", scaled(parts[3], 1 / ideal), 0.0, "symmetry")
+    kept = memory.result().estimate("vacf", 0)
+    source = "slope −2ω/3 at the start, exact"
+    found.against("fluid-memory", "⟨v(0)·v(t)⟩ at 0.1/ω", kept, math.exp(-0.2 / 3), source, 5e-4)
+    h = of_blocks(boltzmann.result()["h"])
+    least = -1.5 * (1 + math.log(2 * math.pi))
+    found.against("fluid-H", "Boltzmann's H", h, least, "Maxwell's law", 5e-3, "bins: 0.005")
+    around = pairs.result()
+    far = around["distance"] > 4
+    g = of_blocks(around["g"][far].reshape(10, -1).mean(axis=1))
+    found.against("fluid-g-far", "g(r), r from 4 to 5", g, 1.0, "no order far away", 2e-3)
+    mean = float(counts.counts().mean())
+    twice = 2 * collisions / N
+    found.exact(
+        "fluid-counts", "mean of the spheres' counters", mean, twice, 1e-9, "2 collisions/N"
     )
     return [found]
 
@@ -158,4 +207,5 @@ def checks() -> list[Check]:
         Check(f"crystal-{rho:g}", "crystal", partial(crystal, rho), 3.0, 10)
         for rho in known.CRYSTAL_Z
     ]
-    return [*fluids, *programs, *times, *crystals]
+    shapes = [Check("fluid-structure", "fluid", structure, 5.0, 4)]
+    return [*fluids, *shapes, *programs, *times, *crystals]
