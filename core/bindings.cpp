@@ -16,9 +16,11 @@
 
 #include "arithmetic.hpp"
 #include "engine.hpp"
+#include "helfand.hpp"
 
 namespace nb = nanobind;
 using carom::Engine;
+using carom::Helfand;
 using carom::Vec3;
 
 namespace {
@@ -28,6 +30,7 @@ using Numbers = nb::ndarray<const double, nb::shape<-1>, nb::c_contig, nb::devic
 using Flags = nb::ndarray<const bool, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using Images = nb::ndarray<const int32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Counts = nb::ndarray<const uint32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Bytes = nb::ndarray<const uint8_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using Three = nb::ndarray<const double, nb::shape<3>, nb::c_contig, nb::device::cpu>;
 using WallRows = nb::ndarray<const double, nb::shape<-1, 7>, nb::c_contig, nb::device::cpu>;
 
@@ -121,6 +124,32 @@ auto take_log(Engine& engine) {
     return array_of(std::move(bytes), n);
 }
 
+auto make_helfand(const Vectors& velocity, const Numbers& mass, const Numbers& radius,
+                  const Numbers& charge, double time) {
+    const size_t n = velocity.shape(0);
+    if (mass.shape(0) != n || radius.shape(0) != n || charge.shape(0) != n)
+        throw nb::value_error("arrays of different lengths");
+    std::vector<Vec3> v(n);
+    for (size_t i = 0; i < n; ++i) v[i] = row(velocity, i);
+    const auto numbers = [n](const Numbers& a) { return std::vector(a.data(), a.data() + n); };
+    return std::make_unique<Helfand>(v, numbers(mass), numbers(radius), numbers(charge), time);
+}
+
+auto helfand_advance(Helfand& h, const Bytes& records, const Numbers& times) {
+    const size_t n = records.shape(0) / sizeof(carom::Record), m = times.shape(0);
+    std::vector<carom::Record> log(n);
+    if (n > 0) std::memcpy(log.data(), records.data(), n * sizeof(carom::Record));
+    for (const carom::Record& r : log)
+        if (r.i < 0 || r.j < 0 || size_t(r.i) >= h.size() || size_t(r.j) >= h.size())
+            throw nb::value_error("a record of something else than two spheres");
+    auto out = room_for<double>(m * Helfand::kMoments);
+    {
+        const nb::gil_scoped_release release;
+        h.advance(log.data(), n, times.data(), m, out.get());
+    }
+    return array_of(std::move(out), m, Helfand::kMoments);
+}
+
 }  // namespace
 
 NB_MODULE(_core, m) {
@@ -197,6 +226,15 @@ NB_MODULE(_core, m) {
                 return std::make_tuple(c.time, c.i, c.j);
             },
             "(time, i, j) of an inelastic collapse, or None.");
+
+    nb::class_<Helfand>(m, "Helfand", "What the fluxes of momentum, energy and charge add up to.")
+        .def(nb::new_(&make_helfand), nb::arg("velocity"), nb::arg("mass"), nb::arg("radius"),
+             nb::arg("charge"), nb::arg("time"))
+        .def("advance", &helfand_advance, nb::arg("records"), nb::arg("times"),
+             nb::sig("def advance(self, records: NDArray[numpy.uint8], times: "
+                     "NDArray[numpy.float64]) -> NDArray[numpy.float64]"),
+             "Takes collisions, as bytes; the moments at rising times, (m, 12): xx, yy, zz, xy,\n"
+             "xz, yz of momentum, then x, y, z of energy and of charge.");
 
     m.def("simd_levels", &carom::simd_levels,
           "Instruction sets that this machine can run, slowest first.");

@@ -123,6 +123,33 @@ class Engine:
     def collapse(self) -> tuple[float, int, int] | None:
         """(time, i, j) of an inelastic collapse, or None."""
 
+class Helfand:
+    """What the fluxes of momentum, energy and charge add up to."""
+
+    def __init__(
+        self,
+        velocity: Annotated[
+            NDArray[numpy.float64], dict(shape=(None, 3), order="C", device="cpu", writable=False)
+        ],
+        mass: Annotated[
+            NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)
+        ],
+        radius: Annotated[
+            NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)
+        ],
+        charge: Annotated[
+            NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)
+        ],
+        time: float,
+    ) -> None: ...
+    def advance(
+        self, records: NDArray[numpy.uint8], times: NDArray[numpy.float64]
+    ) -> NDArray[numpy.float64]:
+        """
+        Takes collisions, as bytes; the moments at rising times, (m, 12): xx, yy, zz, xy,
+        xz, yz of momentum, then x, y, z of energy and of charge.
+        """
+
 def simd_levels() -> list[str]:
     """Instruction sets that this machine can run, slowest first."""
 

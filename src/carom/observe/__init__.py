@@ -27,9 +27,16 @@ from carom.observe.rates import CollisionRate, CollisionsPerSphere
 from carom.observe.space import RDF, DensityProfile, TemperatureProfile
 from carom.observe.speeds import HFunction, SpeedDistribution
 from carom.observe.table import Table
+from carom.observe.transport import (
+    BulkViscosity,
+    MutualDiffusion,
+    ShearViscosity,
+    ThermalConductivity,
+)
 
 #: All that can be measured, as ``carom run --observe`` calls it.
 OBSERVABLES: dict[str, type[Observable]] = {
+    "bulk-viscosity": BulkViscosity,
     "collision-rate": CollisionRate,
     "collisions-per-sphere": CollisionsPerSphere,
     "compressibility": Compressibility,
@@ -41,11 +48,14 @@ OBSERVABLES: dict[str, type[Observable]] = {
     "h-function": HFunction,
     "max-overlap": MaxOverlap,
     "msd": MSD,
+    "mutual-diffusion": MutualDiffusion,
     "pressure-tensor": PressureTensor,
     "rdf": RDF,
+    "shear-viscosity": ShearViscosity,
     "speed-distribution": SpeedDistribution,
     "temperature": Temperature,
     "temperature-profile": TemperatureProfile,
+    "thermal-conductivity": ThermalConductivity,
     "vacf": VACF,
     "wall-pressure": WallPressure,
 }
@@ -56,6 +66,7 @@ __all__ = [
     "RDF",
     "VACF",
     "Batch",
+    "BulkViscosity",
     "CollisionRate",
     "CollisionsPerSphere",
     "Compressibility",
@@ -68,13 +79,16 @@ __all__ = [
     "HFunction",
     "MaxOverlap",
     "Moment",
+    "MutualDiffusion",
     "Observable",
     "PressureTensor",
     "Settling",
+    "ShearViscosity",
     "SpeedDistribution",
     "Table",
     "Temperature",
     "TemperatureProfile",
+    "ThermalConductivity",
     "WallPressure",
     "blocking",
     "observable",

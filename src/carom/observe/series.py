@@ -59,13 +59,19 @@ class Series:
 
     def mean(self, column: int) -> Estimate:
         """Mean of one column over the pieces."""
+        return self._mean(self.rows[:, column], float(self.total[column]))
+
+    def weighted(self, weights: Floats) -> Estimate:
+        """Mean of a sum of columns, each times its weight, over the pieces."""
+        return self._mean(self.rows @ weights, float(self.total @ weights))
+
+    def _mean(self, rows: Floats, total: float) -> Estimate:
         pieces = self._count * self._size + len(self._waiting)
         if pieces == 0:
             return Estimate(math.nan, math.nan, math.nan)
-        means = self.rows[:, column] / self._size
+        means = rows / self._size
         about = blocking(means)
-        value = float(self.total[column]) / pieces
-        return Estimate(value, about.error, about.n_independent, settling(means).note)
+        return Estimate(total / pieces, about.error, about.n_independent, settling(means).note)
 
     def ratio(self, column: int, by: int, total: Floats | None = None) -> Estimate:
         """Sum of one column over the sum of another; `total` if more than the rows is known."""

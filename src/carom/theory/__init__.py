@@ -30,7 +30,7 @@ from carom.theory.free_flight import free_path_cdf, free_path_pdf, free_time_cdf
 from carom.theory.granular import haff_temperature, haff_temperature_by_collisions, sonine_a2
 from carom.theory.granular_mixture import granular_temperature_ratio, temperature_rates
 from carom.theory.gravity import barometric_density, mean_height
-from carom.theory.mixtures import Moments, bmcsl, bmcsl_contact, pair_rates
+from carom.theory.mixtures import Moments, bmcsl, bmcsl_contact, mutual_diffusion, pair_rates
 from carom.theory.rods import rod_collision_rate, rod_force, rod_wall_rate
 from carom.theory.rough import rough_ratio, rough_temperatures
 from carom.theory.speeds import (
@@ -85,6 +85,7 @@ __all__ = [
     "mean_free_path",
     "mean_free_time",
     "mean_height",
+    "mutual_diffusion",
     "pair_rates",
     "rod_collision_rate",
     "rod_force",

@@ -180,6 +180,70 @@ def pair_rates(
     return result
 
 
+@formula(
+    f"{CHAPMAN_COWLING}, ch. 14 and 16; contact values: {BMCSL}",
+    packing_fraction=FLUID,
+    mass=POSITIVE,
+    temperature=POSITIVE,
+)
+def mutual_diffusion(
+    radius: ArrayLike,
+    volume: float,
+    count: ArrayLike = 1.0,
+    mass: Numbers = 1.0,
+    temperature: float = 1.0,
+) -> float:
+    """Coefficient D_12 of the mutual diffusion of two kinds of hard spheres, by Enskog.
+
+    To first order of Sonine's polynomials, with n = n_1 + n_2, s = (sigma_1 + sigma_2)/2, the
+    reduced mass mu and `bmcsl_contact`::
+
+        D_12 = 3/(8 n s^2 chi_12) sqrt(kT/(2 pi mu))
+
+    It is the coefficient of Maxwell and Stefan; Fick's is that times the thermodynamic factor,
+    which is 1 in a dilute gas and between spheres of one size.
+
+    Parameters
+    ----------
+    radius, volume, count
+        See `bmcsl_contact`, of two kinds.
+    mass : float or (2,) array_like
+        m of either kind.
+    temperature : float
+        kT.
+
+    Returns
+    -------
+    float
+        Length^2/time. In a dilute gas too low by 1.9 percent for equal spheres, and by up to 12
+        for a few light spheres among heavy ones, where the exact one is 32/(9 pi) times as large.
+
+    Raises
+    ------
+    InputError
+        See `pair_rates`; or if there are not two kinds.
+
+    References
+    ----------
+    S. Chapman, T. G. Cowling, *The Mathematical Theory of Non-Uniform Gases*, 3rd ed. (1970),
+    ch. 14 and 16.
+
+    Examples
+    --------
+    >>> round(mutual_diffusion([0.5, 0.25], 500, count=200, mass=[1, 0.125]), 4)
+    0.557
+    """
+    contact = bmcsl_contact(radius, volume, count)
+    if len(contact) != 2:
+        msg = f"radius must hold two radii, one for each kind, not {len(contact)}"
+        raise InputError(msg)
+    r = np.asarray(radius, np.float64)
+    density = float(np.sum(per_kind("count", count, r))) / volume
+    between = density * float(r.sum() ** 2 * contact[0, 1])
+    spread = float(np.sum(temperature / per_kind("mass", mass, r)))  # kT/mu
+    return 3 / (8 * between) * math.sqrt(spread / (2 * math.pi))
+
+
 def per_kind(name: str, value: Numbers, radius: ArrayLike) -> Floats:
     """A number for each kind of sphere, from one for all or one for each."""
     kinds = np.size(radius)
