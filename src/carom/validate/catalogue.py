@@ -22,6 +22,7 @@ FAMILIES = {
     "flights": "Free flights",
     "speeds": "Speeds",
     "diffusion": "Diffusion",
+    "transport": "Viscosity and conduction of heat",
     "cooling": "A gas that cools",
     "two-kinds": "Two kinds that cool",
     "column": "Gas under gravity",

@@ -225,7 +225,7 @@ def towards_maxwell(size: float) -> list[Found]:
 def checks() -> list[Check]:
     """All of this file."""
     return [
-        Check("flights", "flights", free_flights, 6.0, 6),
-        Check("few", "speeds", few, 2.0, 6),
-        Check("maxwell", "speeds", towards_maxwell, 2.0, 6),
+        Check("flights", "flights", free_flights, 8.0, 4),
+        Check("few", "speeds", few, 1.5, 8),
+        Check("maxwell", "speeds", towards_maxwell, 1.2, 8),
     ]

@@ -80,7 +80,7 @@ def structure(size: float) -> list[Found]:
     omega, z = float(theory.collision_rate(phi)), expected(N, phi)[0]
     tensor, memory = PressureTensor(), VACF(at=[0.1 / omega])
     boltzmann, pairs, counts = HFunction(50 / omega), RDF(reach=5.0), CollisionsPerSphere()
-    collisions = count(size, 2e6)
+    collisions = count(size, 1e6)
     sim.run(collisions=collisions, observe=[tensor, memory, boltzmann, pairs, counts])
     found = Found(f"fluid, φ = {phi:g}", N, collisions)
     pressure = tensor.result()
@@ -192,20 +192,20 @@ def crystal(density: float, size: float) -> list[Found]:
 def checks() -> list[Check]:
     """All of this file."""
     fluids = [
-        Check(f"fluid-{phi:g}", "fluid", partial(equation_of_state, phi), 3.0, 10)
+        Check(f"fluid-{phi:g}", "fluid", partial(equation_of_state, phi), 1.7, 12)
         for phi in FLUID_SIZE
     ]
     programs = [
-        Check(f"md-Z-{n}-{phi:g}", "programs", partial(other_program, n, phi), 2.0, 10)
+        Check(f"md-Z-{n}-{phi:g}", "programs", partial(other_program, n, phi), 1.5, 8)
         for n, phi in EDMD_Z
     ]
     times = [
-        Check(f"md-free-time-{rho:g}", "programs", partial(free_time, rho), 2.0, 10)
+        Check(f"md-free-time-{rho:g}", "programs", partial(free_time, rho), 1.5, 8)
         for rho in known.DYNAMO_FREE_TIME
     ]
     crystals = [
-        Check(f"crystal-{rho:g}", "crystal", partial(crystal, rho), 3.0, 10)
+        Check(f"crystal-{rho:g}", "crystal", partial(crystal, rho), 1.4, 8)
         for rho in known.CRYSTAL_Z
     ]
-    shapes = [Check("fluid-structure", "fluid", structure, 5.0, 4)]
+    shapes = [Check("fluid-structure", "fluid", structure, 6.0, 3)]
     return [*fluids, *shapes, *programs, *times, *crystals]

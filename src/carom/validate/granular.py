@@ -37,7 +37,7 @@ def kurtosis(sim: Simulation) -> float:
 
 def cooling(e: float, size: float) -> list[Found]:
     """T falls by the same share in each collision, and as 1/t^2."""
-    runs = max(6, round(6 * size))
+    runs = max(6, round(10 * size))
     slopes, rates, shapes = [], [], []
     curve = np.zeros((runs, LAST - FIRST + 1))
     gas = fluid(N, PHI, per_sphere=20)
@@ -108,7 +108,7 @@ def two_kinds(mass: float, e: float, size: float) -> list[Found]:
     sim_ratios = []
     met = 0
     heavy = gas.mass == 1.0
-    for _ in range(max(4, round(4 * size))):
+    for _ in range(max(4, round(10 * size))):
         gas.run(collisions=10 * n)
         sim = Simulation(walls=gas.walls, rule=Smooth(e), keep_events=0)
         sim.add_many(gas.position, velocity=gas.velocity, radius=gas.radius, mass=gas.mass)
@@ -134,10 +134,10 @@ def two_kinds(mass: float, e: float, size: float) -> list[Found]:
 def checks() -> list[Check]:
     """All of this file."""
     gases = [
-        Check(f"cooling-{e:g}", "cooling", partial(cooling, e), 4.0, 4) for e in (0.95, 0.9, 0.8)
+        Check(f"cooling-{e:g}", "cooling", partial(cooling, e), 1.5, 5) for e in (0.95, 0.9, 0.8)
     ]
     kinds = [
-        Check(f"two-kinds-{mass:g}-{e:g}", "two-kinds", partial(two_kinds, mass, e), 2.0, 4)
+        Check(f"two-kinds-{mass:g}-{e:g}", "two-kinds", partial(two_kinds, mass, e), 1.0, 6)
         for mass, e in ((0.25, 0.8), (0.1, 0.95))
     ]
     return [*gases, *kinds]

@@ -1,14 +1,20 @@
-"""Diffusion, and how it depends on the size of the periodic cube."""
+"""Diffusion, and how it depends on the size of the cube; viscosities and conduction of heat."""
 
 import math
 from functools import partial
 
 from carom import theory
-from carom.observe import Diffusion, Estimate
+from carom.observe import (
+    BulkViscosity,
+    Diffusion,
+    Estimate,
+    ShearViscosity,
+    ThermalConductivity,
+)
 from carom.simulation import Simulation
 from carom.validate import references as known
 from carom.validate.row import Check, Found
-from carom.validate.runs import fluid, scaled
+from carom.validate.runs import count, fluid, scaled
 
 N = 1372
 ENSKOG = "Enskog, Lindenfeld and Shizgal 1979"
@@ -113,14 +119,63 @@ def dilute(size: float) -> list[Found]:
     return [found]
 
 
+def coefficients(density: float, lags: tuple[float, float], size: float) -> list[Found]:
+    """Viscosities and conduction of heat, as another program measured them; and by Enskog."""
+    sim = fluid(N, density * math.pi / 6)
+    shear, bulk, heat = ShearViscosity(lags), BulkViscosity(lags), ThermalConductivity(lags)
+    collisions = count(size, 4e6)
+    sim.run(collisions=collisions, observe=[shear, bulk, heat])
+    found = Found(f"fluid, nσ³ = {density:g}", N, collisions)
+    phi = density * math.pi / 6
+    for name, quantity, measured, numbers, enskog in (
+        ("shear", "shear viscosity", shear, known.DYNAMO_SHEAR, theory.shear_viscosity(phi)),
+        ("bulk", "bulk viscosity", bulk, known.DYNAMO_BULK, theory.bulk_viscosity(phi)),
+        ("heat", "thermal conductivity", heat, known.DYNAMO_HEAT, theory.thermal_conductivity(phi)),
+    ):
+        value = measured.result().estimate("value", 0)
+        number = numbers[density]
+        row = f"transport-{density:g}-{name}"
+        found.against(row, quantity, value, number.value, known.DYNAMO, number.error)
+        if density == 0.5:
+            unsure, note = 0.05 * enskog, "good to 5 %"
+            found.against(f"{row}-Enskog", quantity, value, enskog, ENSKOG, unsure, note)
+    return [found]
+
+
+def gas(size: float) -> list[Found]:
+    """Viscosity and conduction of heat of a gas, which Enskog knows to a percent."""
+    phi = 0.02
+    sim = fluid(N, phi, per_sphere=30)
+    shear, heat = ShearViscosity(), ThermalConductivity()
+    collisions = count(size, 4e6)
+    sim.run(collisions=collisions, observe=[shear, heat])
+    found = Found(f"gas, φ = {phi:g}", N, collisions)
+    for name, quantity, measured, enskog in (
+        ("shear", "shear viscosity", shear, theory.shear_viscosity(phi)),
+        ("heat", "thermal conductivity", heat, theory.thermal_conductivity(phi)),
+    ):
+        value = measured.result().estimate("value", 0)
+        unsure = 0.01 * enskog
+        found.against(
+            f"transport-gas-{name}", quantity, value, enskog, ENSKOG, unsure, "good to 1 %"
+        )
+    return [found]
+
+
 def checks() -> list[Check]:
     """All of this file."""
     dense = [
         Check(f"diffusion-{rho:g}", "diffusion", partial(against_dynamo, rho), seconds, 4)
-        for rho, seconds in ((0.5, 6.0), (0.8, 15.0))
+        for rho, seconds in ((0.5, 2.2), (0.8, 5.5))
+    ]
+    flows = [
+        Check(f"transport-{rho:g}", "transport", partial(coefficients, rho, lags), 4.0, 5)
+        for rho, lags in ((0.5, (0.5, 2.0)), (0.8, (0.3, 1.0)))
     ]
     return [
         *dense,
-        Check("diffusion-size", "diffusion", by_size, 8.0, 6),
-        Check("diffusion-gas", "diffusion", dilute, 3.0, 6),
+        *flows,
+        Check("transport-gas", "transport", gas, 6.0, 4),
+        Check("diffusion-size", "diffusion", by_size, 5.0, 5),
+        Check("diffusion-gas", "diffusion", dilute, 1.3, 6),
     ]
