@@ -125,7 +125,7 @@ def _print(data: dict[str, Any], mode: str) -> None:
             for row in check["rows"]:
                 if row["state"] != state:
                     state = row["state"]
-                    sheet.add_row(Text(f" {state}", style="dim"))
+                    sheet.add_row(Text(f" {_of(row)}", style="dim"))
                 sheet.add_row(
                     f"  {row['quantity']}",
                     results.measured(row),
@@ -140,6 +140,14 @@ def _print(data: dict[str, Any], mode: str) -> None:
         say(Text(f"{len(red)} of {len(found)} rows are red: {', '.join(red)}.", style="bold red"))
     else:
         say(Text(f"All {len(found)} rows are as they should be.", style="green"))
+
+
+def _of(row: dict[str, Any]) -> str:
+    """What was measured, and from how much."""
+    many = row["collisions"]
+    size = f"N = {row['n']}" if row["n"] > 2 else ""
+    from_ = (f"{many:.1e}".replace("e+0", "e") if many >= 1e4 else f"{many}") + " collisions"
+    return ", ".join(filter(None, [row["state"], size, from_ if many else ""]))
 
 
 def _verdict(row: dict[str, Any]) -> Text:

@@ -117,8 +117,8 @@ def deviation(row: dict[str, Any]) -> str:
     """How far off, in standard errors, or in tolerances where the number is exact."""
     if row["deviation"] is None:
         return "?"
-    unit = "tol" if row["kind"] == EXACT else "σ"
-    return f"{row['deviation'] + 0.0:+.1f} {unit}"
+    off = row["deviation"]
+    return f"{abs(off):.1g} tol" if row["kind"] == EXACT else f"{off:+.1f} σ"
 
 
 def verdict(row: dict[str, Any]) -> str:
