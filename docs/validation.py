@@ -50,7 +50,6 @@ def plants():
     """Plants each error, and says what caught it."""
     sys.path.insert(0, str(DOCS.parent))
     import pytest
-
     from tests.physics.plants import PLANTS
     from tests.physics.test_validate_plants import caught, green
 

@@ -186,7 +186,7 @@ def between_walls(size: float) -> list[Found]:
 def checks() -> list[Check]:
     """All of this file."""
     return [
-        Check("column", "column", atmosphere, 2.2, 10),
-        Check("ideal", "column", ideal, 0.5, 4),
-        Check("walls", "walls", between_walls, 0.6, 12),
+        Check("column", "column", atmosphere, 2.2, 8),
+        Check("ideal", "column", ideal, 0.5, 2),
+        Check("walls", "walls", between_walls, 0.6, 8),
     ]

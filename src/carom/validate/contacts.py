@@ -160,5 +160,5 @@ def checks() -> list[Check]:
         Check("ball", "ball", bouncing_ball, 0.1),
         Check("box", "ball", in_a_box, 0.1),
         Check("hollow", "ball", in_a_sphere, 0.2),
-        Check("sinai", "sinai", sinai, 2.2, 8),
+        Check("sinai", "sinai", sinai, 2.2, 4),
     ]

@@ -225,7 +225,7 @@ def towards_maxwell(size: float) -> list[Found]:
 def checks() -> list[Check]:
     """All of this file."""
     return [
-        Check("flights", "flights", free_flights, 8.0, 4),
-        Check("few", "speeds", few, 1.5, 8),
-        Check("maxwell", "speeds", towards_maxwell, 1.2, 8),
+        Check("flights", "flights", free_flights, 8.0, 3),
+        Check("few", "speeds", few, 1.5, 4),
+        Check("maxwell", "speeds", towards_maxwell, 1.2, 4),
     ]

@@ -192,20 +192,20 @@ def crystal(density: float, size: float) -> list[Found]:
 def checks() -> list[Check]:
     """All of this file."""
     fluids = [
-        Check(f"fluid-{phi:g}", "fluid", partial(equation_of_state, phi), 1.7, 12)
+        Check(f"fluid-{phi:g}", "fluid", partial(equation_of_state, phi), 1.7, 6)
         for phi in FLUID_SIZE
     ]
     programs = [
-        Check(f"md-Z-{n}-{phi:g}", "programs", partial(other_program, n, phi), 1.5, 8)
+        Check(f"md-Z-{n}-{phi:g}", "programs", partial(other_program, n, phi), 1.5, 4)
         for n, phi in EDMD_Z
     ]
     times = [
-        Check(f"md-free-time-{rho:g}", "programs", partial(free_time, rho), 1.5, 8)
+        Check(f"md-free-time-{rho:g}", "programs", partial(free_time, rho), 1.5, 4)
         for rho in known.DYNAMO_FREE_TIME
     ]
     crystals = [
-        Check(f"crystal-{rho:g}", "crystal", partial(crystal, rho), 1.4, 8)
+        Check(f"crystal-{rho:g}", "crystal", partial(crystal, rho), 1.4, 4)
         for rho in known.CRYSTAL_Z
     ]
-    shapes = [Check("fluid-structure", "fluid", structure, 6.0, 3)]
+    shapes = [Check("fluid-structure", "fluid", structure, 6.0, 2)]
     return [*fluids, *shapes, *programs, *times, *crystals]

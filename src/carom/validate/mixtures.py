@@ -122,6 +122,6 @@ def colloid(size: float) -> list[Found]:
 def checks() -> list[Check]:
     """All of this file."""
     return [
-        Check("mixture-half", "mixture", half_and_half, 5.5, 4),
-        Check("mixture-colloid", "mixture", colloid, 5.0, 4),
+        Check("mixture-half", "mixture", half_and_half, 5.5, 3),
+        Check("mixture-colloid", "mixture", colloid, 5.0, 3),
     ]

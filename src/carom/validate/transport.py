@@ -165,17 +165,17 @@ def gas(size: float) -> list[Found]:
 def checks() -> list[Check]:
     """All of this file."""
     dense = [
-        Check(f"diffusion-{rho:g}", "diffusion", partial(against_dynamo, rho), seconds, 4)
+        Check(f"diffusion-{rho:g}", "diffusion", partial(against_dynamo, rho), seconds, 3)
         for rho, seconds in ((0.5, 2.2), (0.8, 5.5))
     ]
     flows = [
-        Check(f"transport-{rho:g}", "transport", partial(coefficients, rho, lags), 4.0, 5)
+        Check(f"transport-{rho:g}", "transport", partial(coefficients, rho, lags), 4.0, 3)
         for rho, lags in ((0.5, (0.5, 2.0)), (0.8, (0.3, 1.0)))
     ]
     return [
         *dense,
         *flows,
-        Check("transport-gas", "transport", gas, 6.0, 4),
-        Check("diffusion-size", "diffusion", by_size, 5.0, 5),
-        Check("diffusion-gas", "diffusion", dilute, 1.3, 6),
+        Check("transport-gas", "transport", gas, 6.0, 3),
+        Check("diffusion-size", "diffusion", by_size, 5.0, 4),
+        Check("diffusion-gas", "diffusion", dilute, 1.3, 4),
     ]
