@@ -14,7 +14,7 @@ from .plants import PLANTS
 #: Sizes at which rows are still sharp enough, where the quick report's is more than is needed.
 SIZES = {
     "diffusion-size": 0.5, "fluid-structure": 1.0, "mixture-half": 1.0, "few": 0.3,
-    "two-kinds-0.25-0.8": 1.0,
+    "two-kinds-0.25-0.8": 1.0, "cooling-0.9": 1.0, "transport-0.5": 1.0,
 }  # fmt: skip
 SIZE = 0.25
 
