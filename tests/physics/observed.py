@@ -31,9 +31,9 @@ def misses(table, column):
         return (table[column] - table[f"{column}_theory"]) / table[f"{column}_error"]
 
 
-def mixture(n=1000, seed=2):
-    """As many spheres of diameter 1/2 and mass 1/8 as of diameter and mass 1, phi = 0.3."""
-    side = (n / 2 * math.pi / 6 * (1 + 1 / 8) / 0.3) ** (1 / 3)
+def mixture(n=1000, seed=2, phi=0.3):
+    """As many spheres of diameter 1/2 and mass 1/8 as of diameter and mass 1."""
+    side = (n / 2 * math.pi / 6 * (1 + 1 / 8) / phi) ** (1 / 3)
     cells = math.ceil((n / 4) ** (1 / 3))
     rng = np.random.default_rng(seed)
     cell = side / cells

@@ -39,6 +39,12 @@ def gas(walls=PERIODIC, n=27, **options):
         (observe.Diffusion, {"rule": carom.Smooth(0.9)}, "take restitution 1"),
         (observe.Diffusion, {"walls": carom.Periodic(9, 9, 10)}, "make all sides equal"),
         (observe.Diffusion, {"collide": False}, "all move and collide"),
+        (observe.ShearViscosity, {"walls": BOX}, "here are 6 walls; take carom.Periodic"),
+        (observe.BulkViscosity, {"walls": carom.Open()}, "x and y and z are open here"),
+        (observe.ThermalConductivity, {"rule": carom.Smooth(0.9)}, "take restitution 1"),
+        (observe.BulkViscosity, {"collide": False}, "of spheres that all move and collide"),
+        (observe.MutualDiffusion, {}, "of two kinds of spheres .* and here is 1 kind"),
+        (lambda: observe.ShearViscosity((0.1, 0.2)), {}, "between ends at 0.2, and spheres fly"),
         (observe.RDF, {"walls": BOX}, "or there is no mean density"),
         (observe.RDF, {"walls": carom.Open()}, "or there is no mean density"),
         (lambda: observe.RDF(reach=5), {}, "reach is 5, more than half the shortest side, 4.5"),
@@ -64,6 +70,9 @@ def test_where_it_has_no_meaning(make, options, message):
         (lambda: observe.RDF(reach=-1), "reach is -1"),
         (lambda: observe.MSD(at=[0, 1]), "lags are above 0"),
         (lambda: observe.Diffusion(between=(1, 2, 3)), "two lags, not 3"),
+        (lambda: observe.ShearViscosity(5), "between must be two lags, not 5"),
+        (lambda: observe.BulkViscosity((0, 1)), "the first lag of between is 0"),
+        (lambda: observe.ThermalConductivity((2, 1)), "the second lag of between is 1"),
         (lambda: observe.PressureTensor(every=-1), "every is -1"),
         (lambda: observe.Temperature(every=1, at=[2]), "both given"),
     ],
@@ -77,10 +86,13 @@ def test_bad_options(action, message):
 def test_spheres_it_is_not_about():
     mixed, several = gas(), gas()
     mixed.mass = np.where(np.arange(27) < 9, 2.0, 1.0)
-    for make in (observe.SpeedDistribution, observe.HFunction, observe.Diffusion):
+    for make in (observe.SpeedDistribution, observe.HFunction, observe.Diffusion,
+                 observe.ThermalConductivity):  # fmt: skip
         with pytest.raises(carom.InputError, match="of one radius and mass, and here are 2"):
             mixed.run(duration=1, observe=make())
     several.mass = 1 + np.arange(27.0)
+    with pytest.raises(carom.InputError, match="radius or mass, and here are 27 kinds"):
+        several.run(duration=1, observe=observe.MutualDiffusion())
     for make in (observe.CollisionRate, observe.Temperature):
         with pytest.raises(carom.InputError, match="here are 27; give spheres at most 16"):
             several.run(duration=1, observe=make())
@@ -104,6 +116,14 @@ def test_fixed_spheres_alone(make):
         sim.run(duration=10, observe=make())
 
 
+def test_a_solid_has_no_natural_lags_of_mutual_diffusion():
+    sim = carom.Simulation(carom.scenes.fluid(n=108, packing_fraction=0.494))
+    sim.radius = np.where(np.arange(108) < 54, 0.5, 0.505)
+    with pytest.raises(carom.InputError, match=r"here it is 0\.50.*; give between="):
+        sim.run(duration=1, observe=observe.MutualDiffusion())
+    sim.run(duration=1, observe=observe.MutualDiffusion(between=(1, 4)))
+
+
 @pytest.mark.parametrize("make", [observe.Compressibility, observe.PressureTensor])
 def test_fixed_spheres_among_others(make):
     sim = gas(n=20)
@@ -124,6 +144,7 @@ def test_nothing_measured_yet(make):
         (observe.MSD(at=[5]), "MSD has seen no sample in 0.1: the first is due after 5"),
         (observe.VACF(at=[5]), "no sample"),
         (observe.Diffusion(between=(0.05, 5)), "needs a run of 5 at least, and has seen 0.1"),
+        (observe.ShearViscosity(between=(3, 9)), "needs a run of 9 at least, and has seen 0.1"),
         (observe.Temperature(every=5), "no sample"),
         (observe.RDF(every=5), "no sample"),
         (observe.PressureTensor(every=5), "no sample"),
@@ -152,6 +173,8 @@ def test_each_has_a_result_that_can_be_kept(make, tmp_path):
     walls = BOX if make is observe.WallPressure else carom.Periodic(6.2, 6.2, 6.2)
     sim, made = gas(walls), make()
     assert isinstance(made, Observable)
+    if make is observe.MutualDiffusion:
+        sim.species = np.arange(27) % 2
     before = sim.state
     sim.run(collisions=12_000, observe=made)
     twin = gas(walls)
@@ -214,8 +237,8 @@ class TestCommandLine:
         ("names", "message"),
         [
             ("presure", "there is no observable 'presure'; did you mean 'wall-pressure'?"),
-            ("list", "names with commas between them: collision-rate, collisions-per-sphere, "),
-            ("", "names with commas between them: collision-rate, "),
+            ("list", "names with commas between them: bulk-viscosity, collision-rate, "),
+            ("", "names with commas between them: bulk-viscosity, "),
             ("msd,msd", "--observe names msd twice"),
             ("wall-pressure", "WallPressure needs a wall of finite area"),
         ],

@@ -144,10 +144,10 @@ class Helfand(Observable):
 
     def _moment(self, weights: Floats) -> Estimate:
         """A sum over lags of weights times moments."""
-        self.last()
-        if self._looked < LAGS:
+        fewest = 2 * LAGS if self._has_mean else LAGS  # of one window the mean hides all
+        if self._looked < fewest:
             msg = (
-                f"{self.name} needs a run of {LAGS * self._step:.6g} at least, and has seen "
+                f"{self.name} needs a run of {fewest * self._step:.6g} at least, and has seen "
                 f"{self.duration:.6g}; run longer, or give between="
             )
             raise InputError(msg)
@@ -177,6 +177,7 @@ class Helfand(Observable):
         InputError
             If the run was shorter than the later lag.
         """
+        self.last()
         found = [self._moment(weights) for weights in np.eye(LAGS)]
         time: Floats = self._step * np.arange(1.0, LAGS + 1)
         known = self._kinetic
@@ -194,6 +195,7 @@ class Helfand(Observable):
 
     def result(self) -> Table:
         """The coefficient so far."""
+        self.last()
         early, late = self._early * self._step, LAGS * self._step
         weights = np.zeros(LAGS)
         weights[[self._early - 1, -1]] = -1 / (late - early), 1 / (late - early)

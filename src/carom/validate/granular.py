@@ -38,7 +38,7 @@ def kurtosis(sim: Simulation) -> float:
 def cooling(e: float, size: float) -> list[Found]:
     """T falls by the same share in each collision, and as 1/t^2."""
     runs = max(6, round(20 * size))
-    slopes, rates, shapes = [], [], []
+    slopes, rates, shapes, kept = [], [], [], []
     curve = np.zeros((runs, LAST - FIRST + 1))
     gas = fluid(N, PHI, per_sphere=20)
     met = 0
@@ -53,6 +53,7 @@ def cooling(e: float, size: float) -> list[Found]:
             times.append(sim.time)
             a2.append(kurtosis(sim))
         met += sim.collisions
+        kept.append((sim.kinetic_energy + sim.dissipated) / gas.kinetic_energy)
         slopes.append(math.log(curve[k, -1] / curve[k, 0]) / (LAST - FIRST))
         roots = curve[k, [0, -1]] ** -0.5
         rates.append(2 * (roots[1] - roots[0]) / (times[-1] - times[0]))
@@ -82,6 +83,9 @@ def cooling(e: float, size: float) -> list[Found]:
     per_time = 2 * (float(theory.haff_temperature(1.0, e, omega)) ** -0.5 - 1)
     allowed = CORRELATIONS * per_time
     found.against(f"{name}-time", "d(2/√T)/dt", of_blocks(rates), per_time, HAFF, allowed, note)
+    worst = max(abs(one - 1) for one in kept)
+    what = "error of kinetic and dissipated energy"
+    found.exact(f"{name}-energy", what, worst, 0.0, 1e-10, "conservation")
     each = np.arange(FIRST, LAST + 1.0)
     ratio = curve / curve[:, :1]
     line = np.exp(slope * (each - FIRST))

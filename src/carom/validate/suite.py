@@ -74,6 +74,7 @@ def results(checks: Sequence[Check], mode: str) -> Iterator[dict[str, Any]]:
         pool.shutdown(wait=False, cancel_futures=True)
         for process in multiprocessing.active_children():  # idle, or not wanted any more
             process.terminate()
+            process.join()
 
 
 def _by_name(name: str, mode: str) -> dict[str, Any]:

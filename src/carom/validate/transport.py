@@ -68,12 +68,13 @@ def against_dynamo(density: float, size: float) -> list[Found]:
 
 def by_size(size: float) -> list[Found]:
     """D of a small and a large cube differ as the images of a sphere say."""
+    # Flow goes round a cube of 14 and comes back in a time of about 5: L^2 n/(4 pi^2 eta).
     density, eta = 0.5, known.DYNAMO_SHEAR[0.5]
     ways = []
     shifts = []
     met = 0
-    for n, windows in ((108, 300), (N, 40)):
-        sim, measured = diffusion(n, density, 20.0 * round(windows * size), (5.0, 20.0))
+    for n, windows, lags in ((108, 300, (5.0, 20.0)), (N, 30, (15.0, 40.0))):
+        sim, measured = diffusion(n, density, lags[1] * round(windows * size), lags)
         ways.append(in_this_cube(measured))
         shifts.append(float(theory.finite_size_diffusion((n / density) ** (1 / 3), eta.value)))
         met += sim.collisions
@@ -133,12 +134,14 @@ def coefficients(density: float, lags: tuple[float, float], size: float) -> list
         ("heat", "thermal conductivity", heat, known.DYNAMO_HEAT, theory.thermal_conductivity(phi)),
     ):
         value = measured.result().estimate("value", 0)
-        number = numbers[density]
         row = f"transport-{density:g}-{name}"
-        found.against(row, quantity, value, number.value, known.DYNAMO, number.error)
-        if density == 0.5:
-            unsure, note = 0.05 * enskog, "good to 5 %"
-            found.against(f"{row}-Enskog", quantity, value, enskog, ENSKOG, unsure, note)
+        if density in numbers:
+            number = numbers[density]
+            found.against(row, quantity, value, number.value, known.DYNAMO, number.error)
+        if density == 0.5 or name == "bulk":
+            limit = 0.05 if density == 0.5 else 0.1
+            note = f"good to {100 * limit:.0f} %"
+            found.against(f"{row}-Enskog", quantity, value, enskog, ENSKOG, limit * enskog, note)
     return [found]
 
 
