@@ -16,7 +16,10 @@ from carom.validate.runs import fluid, of_blocks
 
 N, PHI = 4000, 0.05
 #: Collisions per sphere; before, the speeds take on their cooling shape.
-FIRST, LAST = 3, 25
+FIRST = 3
+#: Until when the gas is even enough, by restitution: later, more so if much is lost, spheres
+#: begin to flow together in whirls, and cool more slowly.
+LAST = {0.95: 25, 0.9: 25, 0.8: 12}
 HAFF = "P. K. Haff, J. Fluid Mech. 134, 401 (1983), with a2"
 SONINE = "T. P. C. van Noije, M. H. Ernst, Granul. Matter 1, 57 (1998)"
 GARZO = "V. Garzó, J. W. Dufty, Phys. Rev. E 60, 5706 (1999)"
@@ -39,7 +42,8 @@ def cooling(e: float, size: float) -> list[Found]:
     """T falls by the same share in each collision, and as 1/t^2."""
     runs = max(6, round(20 * size))
     slopes, rates, shapes, kept = [], [], [], []
-    curve = np.zeros((runs, LAST - FIRST + 1))
+    last = LAST[e]
+    curve = np.zeros((runs, last - FIRST + 1))
     gas = fluid(N, PHI, per_sphere=20)
     met = 0
     for k in range(runs):
@@ -47,14 +51,14 @@ def cooling(e: float, size: float) -> list[Found]:
         sim = Simulation(walls=gas.walls, rule=Smooth(e), keep_events=0)
         sim.add_many(gas.position, velocity=gas.velocity)
         times, a2 = [], []
-        for place, c in enumerate(range(FIRST, LAST + 1)):
+        for place, c in enumerate(range(FIRST, last + 1)):
             sim.run(collisions=c * N // 2 - sim.collisions)
             curve[k, place] = temperature(sim)
             times.append(sim.time)
             a2.append(kurtosis(sim))
         met += sim.collisions
         kept.append((sim.kinetic_energy + sim.dissipated) / gas.kinetic_energy)
-        slopes.append(math.log(curve[k, -1] / curve[k, 0]) / (LAST - FIRST))
+        slopes.append(math.log(curve[k, -1] / curve[k, 0]) / (last - FIRST))
         roots = curve[k, [0, -1]] ** -0.5
         rates.append(2 * (roots[1] - roots[0]) / (times[-1] - times[0]))
         shapes.append(float(np.mean(a2)))
@@ -86,7 +90,7 @@ def cooling(e: float, size: float) -> list[Found]:
     worst = max(abs(one - 1) for one in kept)
     what = "error of kinetic and dissipated energy"
     found.exact(f"{name}-energy", what, worst, 0.0, 1e-10, "conservation")
-    each = np.arange(FIRST, LAST + 1.0)
+    each = np.arange(FIRST, last + 1.0)
     ratio = curve / curve[:, :1]
     line = np.exp(slope * (each - FIRST))
     found.panels.append(
@@ -106,19 +110,19 @@ def cooling(e: float, size: float) -> list[Found]:
 
 def two_kinds(mass: float, e: float, size: float) -> list[Found]:
     """Kinds of equal size and unlike mass cool alike, at different temperatures."""
-    phi, n = 0.1, 2000
+    phi, n = 0.05, 1000  # in a larger box masses part, and the ratio grows
     radius, masses = np.array([0.5, 0.5]), np.array([1.0, mass])
     gas = mixed((n // 2, n // 2), radius, masses, phi)
     sim_ratios = []
     met = 0
     heavy = gas.mass == 1.0
-    for _ in range(max(4, round(10 * size))):
+    for _ in range(max(4, round(20 * size))):
         gas.run(collisions=10 * n)
         sim = Simulation(walls=gas.walls, rule=Smooth(e), keep_events=0)
         sim.add_many(gas.position, velocity=gas.velocity, radius=gas.radius, mass=gas.mass)
-        sim.run(collisions=8 * n)
+        sim.run(collisions=5 * n)
         seen = []
-        for _ in range(8):
+        for _ in range(4):
             sim.run(collisions=n)
             squares = sim.mass * (sim.velocity**2).sum(axis=1)
             seen.append(float(squares[heavy].mean() / squares[~heavy].mean()))
@@ -137,9 +141,7 @@ def two_kinds(mass: float, e: float, size: float) -> list[Found]:
 
 def checks() -> list[Check]:
     """All of this file."""
-    gases = [
-        Check(f"cooling-{e:g}", "cooling", partial(cooling, e), 3.0, 3) for e in (0.95, 0.9, 0.8)
-    ]
+    gases = [Check(f"cooling-{e:g}", "cooling", partial(cooling, e), 3.0, 3) for e in LAST]
     kinds = [
         Check(f"two-kinds-{mass:g}-{e:g}", "two-kinds", partial(two_kinds, mass, e), 1.0, 6)
         for mass, e in ((0.25, 0.8), (0.1, 0.95))
