@@ -78,6 +78,14 @@ def measured(value, error):
     return run
 
 
+def test_a_check_that_fails_in_any_way_is_red_and_others_go_on():
+    def wrong(size):
+        return [][1]
+
+    done = suite.work(Check("wrong", "fluid", wrong, 1.0), "quick")
+    assert done["failure"] == "IndexError: list index out of range"
+
+
 def broken(size):
     msg = "it does not run"
     raise RunError(msg)

@@ -96,3 +96,4 @@ def _curve(axes: Any, panel: dict[str, Any]) -> None:
     axes.set_title(panel["title"], loc="left")
     axes.set_xlabel(panel["x_label"])
     axes.set_ylabel(panel["y_label"])
+    axes.ticklabel_format(useOffset=False)

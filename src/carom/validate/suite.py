@@ -32,8 +32,10 @@ def work(check: Check, mode: str) -> dict[str, Any]:
         for found in check.run(check.full if mode == FULL else 1.0):
             rows += [row.as_data() for row in found.rows]
             panels += [panel.as_data() for panel in found.panels]
-    except CaromError as error:  # it is as red as a wrong number, and others go on
-        failure, rows, panels = str(error), [], []
+    except Exception as error:  # from a wrong engine anything may follow; others go on
+        told = isinstance(error, CaromError)
+        failure = str(error) if told else f"{type(error).__name__}: {error}"
+        rows, panels = [], []
     return {
         "check": check.name,
         "family": check.family,
