@@ -206,7 +206,7 @@ SINGLE = {
         ("twice the gravity", handed(heavy_gravity), ("ball", "ideal")),
         ("radius and diameter confused: spheres half as large", handed(thinner), ("rods", "sinai")),
         ("one of two masses doubled", handed(heavier), ("pairs", "galperin-4")),
-        ("twice the energy lost: 1 − e²", handed(lossy), ("cooling-0.9", "pairs")),
+        ("twice the energy lost: 1 − e²", handed(lossy), ("pairs",)),
         ("half the restitution of walls", handed(lossy_walls), ("ball", "box")),
         ("periods of twice the length", handed(wide), ("sinai", "fluid-0.3")),
         ("impulses of collisions doubled", strong_impulses, ("fluid-0.3", "fluid-0.1")),

@@ -50,13 +50,26 @@ def caught(plant) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize("name", sorted({name for plant in ALL for name in plant.checks}))
+#: Checks that take seconds; errors that they alone show are planted with ``-m validate``.
+LONG = {"cooling-0.9", "diffusion-size", "fluid-structure", "mixture-half", "transport-0.5"}
+
+
+def marked(value, names):
+    return pytest.param(value, marks=pytest.mark.validate) if LONG & set(names) else value
+
+
+CHECKS = sorted({name for plant in ALL for name in plant.checks})
+
+
+@pytest.mark.parametrize("name", [marked(name, [name]) for name in CHECKS])
 def test_rows_are_green_without_an_error(name):
     bad = [(row.name, row.measured, row.reference) for row in clean(name) if not row.passed]
     assert not bad
 
 
-@pytest.mark.parametrize("plant", ALL, ids=lambda plant: plant.what)
+@pytest.mark.parametrize(
+    "plant", [marked(plant, plant.checks) for plant in ALL], ids=lambda plant: plant.what
+)
 def test_a_planted_error_turns_a_row_red(plant, monkeypatch):
     for name in plant.checks:
         green(name)

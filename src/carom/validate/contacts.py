@@ -82,11 +82,13 @@ def bouncing_ball(size: float) -> list[Found]:
     found = Found(f"ball on a floor, e = {e:g}", 1, 1 + len(times))
     found.exact("ball-peak", "height of the first peak", peak, e * e * height, 1e-12, source)
     tenth = fall * (1 + 2 * sum(e**k for k in range(1, 10)))
-    found.exact("ball-tenth", "time of bounce 10", times[8], tenth, 1e-12 * tenth, source)
+    seen = times[8] if len(times) > 8 else math.nan
+    found.exact("ball-tenth", "time of bounce 10", seen, tenth, 1e-12 * tenth, source)
     rest = fall * (1 + e) / (1 - e)
+    last = times[-1] if len(times) else math.nan
     # It is at rest when it would rise by less than 1e-9 of its radius.
     left = 2 * math.sqrt(2 * g * 0.5e-9) / (g * (1 - e))
-    found.exact("ball-rest", "time of rest", times[-1], rest, left, source, "rise below 1e-9 R")
+    found.exact("ball-rest", "time of rest", last, rest, left, source, "rise below 1e-9 R")
     found.exact("ball-energy", "m g h at the start", energy, mass * g * height, 1e-12, CLOSED)
     lost = sim.dissipated
     found.exact("ball-lost", "energy dissipated", lost, mass * g * height, 1e-8, CLOSED)
