@@ -7,15 +7,19 @@ import signal
 import subprocess
 import sys
 import time
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
 import pytest
+from tests.physics.plants import PLANTS
 
 from carom.cli import main
 from carom.errors import FileError, InputError, RunError
 from carom.observe import Estimate
 from carom.validate import catalogue, figures, references, results, suite
 from carom.validate.row import Check, Found, Panel, Row
+
+ROOT = Path(__file__).parents[2]
 
 
 def row(**changes):
@@ -218,6 +222,23 @@ def test_a_report_that_cannot_be_read_or_written(tmp_path):
         results.read(tmp_path / "old.json")
     with pytest.raises(FileError, match="cannot write to"):
         results.write(tmp_path / "missing", results.report([]))
+
+
+def test_the_page_shows_the_stored_report():
+    spec = spec_from_file_location("validation_page", ROOT / "docs" / "validation.py")
+    page = module_from_spec(spec)
+    spec.loader.exec_module(page)
+    data, text = results.read(page.RESULTS), page.PAGE.read_text("utf-8")
+    blocks = {match[2]: match[0] for match in page.BLOCK.finditer(text)}
+    assert set(blocks) == {"rows", "plants"}
+    assert page.rows(data) in blocks["rows"]
+    assert not results.red(data)
+    for family in results.by_family(data):
+        assert (page.IMAGES / f"{family}.svg").exists()
+    # Each error that is planted was caught by something.
+    planted = [plant for group in PLANTS.values() for plant in group]
+    assert blocks["plants"].count("\n| ") == len(planted) + 1
+    assert "**none**" not in blocks["plants"]
 
 
 class TestForReal:
