@@ -69,13 +69,12 @@ def plants():
 def main():
     """Renew all."""
     data = results.read(RESULTS)
-    makers = {"rows": lambda: rows(data)}
+    made = {"rows": rows(data)}
     if "--plants" in sys.argv:
-        makers["plants"] = plants
+        made["plants"] = plants()
 
     def renewed(match):
-        make = makers.get(match[2])
-        return f"{match[1]}{make()}\n{match[3]}" if make else match[0]
+        return f"{match[1]}{made[match[2]]}\n{match[3]}" if match[2] in made else match[0]
 
     PAGE.write_text(BLOCK.sub(renewed, PAGE.read_text("utf-8")), "utf-8")
     IMAGES.mkdir(exist_ok=True)

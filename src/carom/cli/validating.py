@@ -19,7 +19,7 @@ FAILED, INTERRUPTED = 1, 130
 def validate(
     quick: Annotated[
         bool,
-        typer.Option("--quick", metavar="", help="Shorter runs: two minutes, not half an hour."),
+        typer.Option("--quick", metavar="", help="Shorter runs: about a minute, not four."),
     ] = False,
     only: Annotated[
         str | None,
