@@ -50,6 +50,15 @@ def equation_of_state(phi: float, size: float) -> list[Found]:
     met = rate.result().estimate("rate", 0)
     source = "Z = 1 + (√π/6) σω √(m/kT), " + EQUATION
     found.against(f"{name}-rate", "collisions of a sphere", met, omega, source, FITS * omega)
+    finite = FLUID_SIZE[phi] / N
+    if phi == 0.1:
+        series = float(theory.virial_series(phi)) + finite
+        source = "ten virial coefficients, N. Clisby, B. M. McCoy, J. Stat. Phys. 122, 15 (2006)"
+        found.against(f"{name}-virial", "Z", measured, series, source, FITS * z)
+    if phi == 0.3:
+        simple = float(theory.carnahan_starling(phi)) + finite
+        source = "N. F. Carnahan, K. E. Starling, J. Chem. Phys. 51, 635 (1969)"
+        found.against(f"{name}-Carnahan", "Z", measured, simple, source, 0.003 * z, "good to 0.3 %")
     if phi in (0.1, 0.4):
         # Of a fixed energy shared by f squares; it is √π for infinitely many.
         f = 3 * N - 3

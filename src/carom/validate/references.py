@@ -73,10 +73,10 @@ EDMD_COOLING = Known(-0.06287, 0.0003)
 DSMC = "simulation of the Boltzmann equation (DSMC), made for this"
 DSMC_A2 = {0.9: Known(-0.0150, 0.0005)}
 
-#: Of the gas of Boltzmann, in mean free times: P(tau > 1, 2, 3) and <tau^2>/<tau>^2; Tait's
+#: Of the gas of Boltzmann, in mean free times: P(tau > 1, 2) and <tau^2>/<tau>^2; Tait's
 #: free path from a moment on, n sigma^2 <v/nu>. Exact quadratures.
 QUADRATURE = "exact quadrature of the Boltzmann gas"
-SURVIVAL = {1: 0.3609538586, 2: 0.1356627221, 3: 0.0526906411}
+SURVIVAL = {1: 0.3609538586, 2: 0.1356627221}
 TAU_SQUARED = 2.0761308045
 TAIT = 0.2156429269
 
