@@ -11,6 +11,7 @@ from carom import place
 from carom.engine import Engine, FastEngine, Stop
 from carom.random_numbers import Random
 from carom.state import State
+from carom.validate import references
 from carom.world import World
 
 DATA = Path(__file__).parent / "data"
@@ -18,7 +19,12 @@ EPS = float(np.finfo(float).eps)
 
 
 def table(name: str) -> list[dict[str, str]]:
-    """Rows of a reference table, without the lines that begin with #."""
+    """Rows of a reference table, without the lines that begin with #.
+
+    Those that ``carom validate`` uses too are in the package.
+    """
+    if not (DATA / f"{name}.csv").exists():
+        return references.table(name)
     with (DATA / f"{name}.csv").open(newline="") as file:
         return list(csv.DictReader(line for line in file if not line.startswith("#")))
 

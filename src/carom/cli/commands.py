@@ -22,6 +22,7 @@ from carom.cli.running import as_data, execute, goal, summary
 from carom.cli.sketching import sketch
 from carom.cli.source import parsed, source, whole
 from carom.cli.story import TOLD, story
+from carom.cli.validating import validate
 from carom.errors import InputError, RunError
 from carom.simulation import Simulation
 from carom.state import State
@@ -261,6 +262,7 @@ def compare(
 
 app.command()(sketch)
 app.command()(bench)
+app.command()(validate)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
