@@ -1,0 +1,52 @@
+// Shadows of spheres on one another, without a map: who stands between a sphere and the lamp is
+// found once per sphere, and each place on it then asks those few.
+#pragma once
+
+#include <vector>
+
+#include "picture.hpp"
+
+namespace carom::raster {
+
+constexpr float kLamp = 0.075f;     // the lamp's radius over its distance: half-shadows widen so
+constexpr float kFaintest = 0.03f;  // shadows that hide less of the lamp are left out
+
+// Radius of the half-shadow at a distance behind what casts it.
+inline float half_shadow(const Look& look, float gap) {
+    return look.soft + kLamp * (gap < look.deepest ? gap : look.deepest);
+}
+
+// The part of the lamp that a disc of radius r hides from a place at a distance s from the line
+// through its middle to the lamp; the lamp's disc is drawn there with radius `wide`.
+inline float hidden(float s, float r, float wide) {
+    const float inner = r > wide ? r - wide : wide - r;
+    const float most = r < wide ? r * r / (wide * wide) : 1.0f;
+    const float share = clamp((s - inner) / (r + wide - inner));
+    return most * (1 - share * share * (3 - 2 * share));
+}
+
+class Casters {
+public:
+    // lamp: unit vector towards it.
+    void find(const std::vector<Ball>& balls, const Look& look, F3 lamp);
+    void clear() { first_.clear(); }
+
+    bool any() const { return !first_.empty(); }
+    const int* begin(int ball) const { return &all_[0] + first_[ball]; }
+    const int* end(int ball) const { return &all_[0] + first_[ball + 1]; }
+
+private:
+    void sort_into_cells(const std::vector<Ball>& balls, const Look& look);
+
+    struct Place {
+        float a, b, height;  // across the light, and towards the lamp
+    };
+    std::vector<Place> places_;
+    float low_[2] = {}, per_[2] = {}, lowest_ = 0;
+    int cells_ = 1;                     // along each axis
+    std::vector<int> starts_, inside_;  // spheres by cell
+    std::vector<int> seen_;             // the sphere that last looked at this one
+    std::vector<int> first_, all_;
+};
+
+}  // namespace carom::raster

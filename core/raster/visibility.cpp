@@ -1,0 +1,91 @@
+#include "visibility.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace carom::raster {
+
+namespace {
+
+// Where the outline of a sphere lies along one axis of the picture: the two rays at distance 1
+// that touch it. a: its place along that axis, z: ahead; needs z > radius.
+void outline(float a, float z, float radius, float& low, float& high) {
+    const float bottom = 1 / ((z - radius) * (z + radius));
+    const float root = radius * std::sqrt(std::max(a * a + (z - radius) * (z + radius), 0.0f));
+    low = (a * z - root) * bottom;
+    high = (a * z + root) * bottom;
+}
+
+}  // namespace
+
+Bounds around(const View& view, F3 c, float radius, float more) {
+    const Bounds all{{0, view.width - 1}, {0, view.height - 1}};
+    if (c.z <= 1.05f * radius) return all;
+    float left, right, bottom, top;
+    outline(c.x, c.z, radius, left, right);
+    outline(c.y, c.z, radius, bottom, top);
+    const float per = 1 / float(view.pixel);
+    const float x = 0.5f * float(view.width) - 0.5f, y = 0.5f * float(view.height) - 0.5f;
+    return {span(left * per + x - more, right * per + x + more, view.width),
+            span(y - top * per - more, y - bottom * per + more, view.height)};
+}
+
+void Visibility::resize(const View& view) {
+    view_ = view;
+    view_.width *= view.samples;
+    view_.height *= view.samples;
+    view_.pixel /= view.samples;
+    stride_ = (view_.width + kLanes - 1) / kLanes * kLanes;
+    depths_.resize(size_t(stride_) * view_.height);
+    ids_.resize(depths_.size());
+}
+
+void Visibility::clear() {
+    std::fill(depths_.begin(), depths_.end(), std::numeric_limits<float>::infinity());
+    std::fill(ids_.begin(), ids_.end(), kNone);
+}
+
+// With the ray d = (x, y, 1) and its difference e to the ray through the centre c, the ray meets
+// the sphere where t d² = d·c - sqrt(d² r² - |e × c|²). That root has no small difference of
+// large numbers in it, so single precision will do. All is divided by c.z.
+void Visibility::add(int index, F3 c, float radius) {
+    if (c.z <= 0.02f * radius || dot(c, c) <= 1.02f * radius * radius) return;
+    const float pixel = float(view_.pixel);
+    // At least a sample large, or small spheres would come and go.
+    const float r = std::max(radius / c.z, 0.6f * pixel), r2 = r * r;
+    const float x0 = c.x / c.z, y0 = c.y / c.z;
+    const Bounds bounds = around(view_, c, r * c.z, 0);
+    const bool bounded = r < 0.95f;  // else its outline need not be an ellipse
+    const float middle = 0.5f * float(view_.width) - 0.5f;
+    const float p2 = r2 - 1 - y0 * y0;
+    for (int row = bounds.y.first; row <= bounds.y.last; ++row) {
+        const float y = view_.ray_y(float(row)), dy = y - y0;
+        const float p1 = r2 * x0 + x0 * y0 * dy;
+        const float p0 = r2 * (1 + y * y + x0 * x0) - dy * dy * (1 + x0 * x0);
+        Span s = bounds.x;
+        if (bounded) {
+            const float inside = p1 * p1 - p2 * p0;
+            if (inside < 0) continue;
+            const float root = std::sqrt(inside);
+            s = span(((p1 - root) / -p2 + x0) / pixel + middle,
+                     ((p1 + root) / -p2 + x0) / pixel + middle, view_.width);
+        }
+        float* depths = &depths_[size_t(row) * stride_];
+        int* ids = &ids_[size_t(row) * stride_];
+        const float ahead = 1 + x0 * x0 + y * y0;
+        for (int first = s.first / kLanes * kLanes; first <= s.last; first += kLanes) {
+            float* const depth = depths + first;
+            int* const id = ids + first;
+            for (int k = 0; k < kLanes; ++k) {
+                const float dx = (float(first + k) - middle) * pixel - x0;
+                const float square = (p2 * dx + 2 * p1) * dx + p0;
+                const float t = c.z * (ahead + x0 * dx - std::sqrt(square > 0 ? square : 0));
+                const bool hit = square >= 0 && t > 0 && t < depth[k];
+                depth[k] = hit ? t : depth[k];
+                id[k] = hit ? index : id[k];
+            }
+        }
+    }
+}
+
+}  // namespace carom::raster

@@ -1,0 +1,168 @@
+"""Draws states: the core's raster, told what the page would show."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom._core import Raster
+from carom.pictures.eye import Eye, lamp, look
+from carom.pictures.look import THEMES, Color, Palette, Theme, colors_of, full_count, parts
+from carom.pictures.room import Room
+from carom.scene import Camera
+from carom.state import Floats, State
+from carom.world import World
+
+Pixels = NDArray[np.uint8]
+
+#: Spheres that a ray meets on its way, about: from the first on a crowd takes light away, from
+#: the second on single shadows are lost among the others.
+CROWDED, DENSE = 0.5, 5.0
+FLOOR_ONLY_FROM = 3000  #: spheres, from which only the floor gets spots under them
+CELL = 3  #: typical radii: the crowd's cells
+SOFTEST = 0.18  #: typical radii: a half-shadow's least radius
+DEEPEST = 0.3  #: of the room: half-shadows widen no more behind that
+SAMPLES = {"draft": 1, "good": 2}  #: along each side of a pixel, by quality
+
+
+@dataclass(frozen=True)
+class Style:
+    """How pictures look; see `carom.render` for what each means."""
+
+    size: tuple[int, int]
+    camera: Camera | None
+    color: Color
+    theme: Theme
+    shadows: bool
+    quality: str
+    wire: bool
+
+    @property
+    def palette(self) -> Palette:
+        """Colours of the theme."""
+        return THEMES[self.theme]
+
+
+class Painter:
+    """Paints states of one world from one place.
+
+    The first state says what there is to see and where the scales of colours end.
+
+    Parameters
+    ----------
+    state : State
+    world : World
+    style : Style
+    full : float
+        Energy or speed at the end of the scale of colours.
+    """
+
+    def __init__(self, state: State, world: World, style: Style, full: float) -> None:
+        self.style = style
+        self.full = full
+        self._period = world.period
+        self.room = Room.of(state, world)
+        self.eye = look(self.room, world.gravity, style.size, style.camera)
+        cover = _cover(state.radius, self.room)
+        values = _look(state, self.room, self.eye, style, cover)
+        if style.wire:
+            cover = 0.0
+        self._raster = Raster(
+            *style.size,
+            SAMPLES[style.quality],
+            self.eye.pixel,
+            np.array([self.eye.place, self.eye.right, self.eye.up, self.eye.forward]),
+            values,
+            _faces(self.room, self.eye, style, cover, len(state)),
+            _edges(self.room, self.eye),
+            self.room.shells,
+        )
+
+    def end_of_scale(self, state: State) -> float:
+        """Energy, speed or number of collisions at the end of the scale of colours."""
+        return full_count(state.collision_count) if self.style.color == "collisions" else self.full
+
+    def paint(self, state: State) -> Pixels:
+        """Draw a picture, (height, width, 3) uint8."""
+        colors = colors_of(state, self.style.color, self.end_of_scale(state))
+        place, radius = state.position, state.radius
+        for axis in np.flatnonzero(self._period):
+            # A sphere that reaches over the border is seen on both sides.
+            x = place[:, axis]
+            over = np.flatnonzero(np.abs(x) + radius > self._period[axis] / 2)
+            copies = place[over]
+            copies[:, axis] -= np.sign(copies[:, axis]) * self._period[axis]
+            place = np.concatenate([place, copies])
+            radius = np.concatenate([radius, radius[over]])
+            colors = np.concatenate([colors, colors[over]])
+        contiguous = np.ascontiguousarray
+        return self._raster.draw(contiguous(place), contiguous(radius), contiguous(colors))
+
+
+def _cover(radius: Floats, room: Room) -> float:
+    """How many spheres a ray meets on its way through the room, about."""
+    a, b, c = np.ptp(room.points, axis=0) + 2 * room.margin
+    return float(np.pi * (radius**2).sum() / max(a * b, b * c, c * a, 1e-30))
+
+
+def _look(
+    state: State, room: Room, eye: Eye, style: Style, cover: float
+) -> dict[str, float | bool | list[float]]:
+    palette = style.palette
+    typical = float(np.sort(state.radius)[len(state) // 2]) if len(state) else 1.0
+    towards = lamp(eye, room)
+    light = room.points @ towards
+    colors = {name: getattr(palette, name) for name in ("back", "line", "shell", "surface")}
+    return {
+        **{name: parts(color).tolist() for name, color in colors.items()},
+        "key": list(palette.key),
+        "sky": list(palette.sky),
+        "ground": list(palette.ground),
+        "tint": [palette.tint] * 3,
+        "lamp": towards.tolist(),
+        "up": eye.above.tolist(),
+        "low": (room.points.min(axis=0) - room.margin).tolist(),
+        "high": (room.points.max(axis=0) + room.margin).tolist(),
+        "fog_from": eye.distance - 0.4 * eye.reach,
+        "fog_per_length": 1 / (2.6 * eye.reach),
+        "fog_most": palette.fog,
+        "line_width": 1.25 * max(1.0, style.size[1] / 720),
+        "soft": SOFTEST * typical,
+        "deepest": DEEPEST * float(np.ptp(light) + 2 * (room.margin + state.radius.max(initial=0))),
+        "shadowed": 1 / (1 + 0.5 * cover),
+        "crowd_cell": CELL * typical if cover > CROWDED else 0.0,
+        "wire": style.wire,
+        "shadows": style.shadows and cover <= DENSE,
+    }
+
+
+def _faces(room: Room, eye: Eye, style: Style, cover: float, n: int) -> Floats:
+    """The rows that the core wants, see ``core/raster/picture.hpp``."""
+    palette = style.palette
+    rows = []
+    for face in room.seen_from(eye.place):
+        floor = face.endless or face.normal @ eye.above > 0.9
+        lengths = np.linalg.norm(face.sides, axis=1)
+        spots = style.shadows and (floor or n <= FLOOR_ONLY_FROM)
+        rows.append(
+            [
+                *face.corner, *(face.sides / lengths[:, None]).ravel(), *face.normal, *lengths,
+                *face.grid,
+                palette.floor if floor else palette.wall,
+                0.2 if face.endless else 0.12 if floor else 0.06,
+                float(face.endless),
+                palette.shade if floor else 0.4 * palette.shade,
+                palette.contact / (1 + 0.3 * cover) if spots else 0.0,
+            ]
+        )  # fmt: skip
+    return np.array(rows, np.float64).reshape(-1, 23)
+
+
+def _edges(room: Room, eye: Eye) -> Floats:
+    """Lines, fainter where the box turns towards the eye."""
+    rows = []
+    for edge in room.edges:
+        sight = eye.place - (edge.begin + edge.end) / 2
+        alpha = 0.34 if (edge.outward @ sight).min() > 0 else 0.66
+        rows.append([*edge.begin, *edge.end, alpha, edge.dash])
+    return np.array(rows, np.float64).reshape(-1, 8)
