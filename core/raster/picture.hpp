@@ -25,6 +25,8 @@ inline float clamp(float x, float low = 0, float high = 1) {
     x = x > low ? x : low;
     return x < high ? x : high;
 }
+// The larger of x and 0, without a choice: that would keep compilers from making vectors of loops.
+inline float positive(float x) { return 0.5f * (x + std::abs(x)); }
 inline float smoothstep(float from, float to, float x) {
     const float s = clamp((x - from) / (to - from));
     return s * s * (3 - 2 * s);

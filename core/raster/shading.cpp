@@ -100,7 +100,7 @@ void Shading::shadow(Batch& b, const std::vector<Ball>& balls, const Casters& ca
                 const float dz = c.z - b.pz[k] - more * lamp_.z;
                 const float gap = dx * lamp_.x + dy * lamp_.y + dz * lamp_.z;
                 const float s2 = dx * dx + dy * dy + dz * dz - gap * gap;
-                const float dark = hidden(std::sqrt(s2 > 0 ? s2 : 0), r, half_shadow(look_, gap));
+                const float dark = hidden(std::sqrt(positive(s2)), r, half_shadow(look_, gap));
                 b.seen[k] *= gap > 0 ? 1 - dark : 1;
             }
         }
@@ -130,7 +130,7 @@ void Shading::light(Batch& b, const std::vector<Ball>& balls, const Casters& cas
         const float ez = x * b.cy[k] - y * b.cx[k];
         const float d2 = 1 + x * x + y * y;
         const float square = d2 * b.r[k] * b.r[k] - (ex * ex + ey * ey + ez * ez);
-        const float half = std::sqrt(square > 0 ? square : 0);
+        const float half = std::sqrt(positive(square));
         const float t = (x * b.cx[k] + y * b.cy[k] + b.cz[k] - half) / d2;
         b.px[k] = t * x, b.py[k] = t * y, b.pz[k] = t;
         const float dx = b.px[k] - b.cx[k], dy = b.py[k] - b.cy[k], dz = t - b.cz[k];

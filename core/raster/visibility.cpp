@@ -7,6 +7,8 @@ namespace carom::raster {
 
 namespace {
 
+constexpr float kFar = std::numeric_limits<float>::infinity();
+
 // Where the outline of a sphere lies along one axis of the picture: the two rays at distance 1
 // that touch it. a: its place along that axis, z: ahead; needs z > radius.
 void outline(float a, float z, float radius, float& low, float& high) {
@@ -41,7 +43,7 @@ void Visibility::resize(const View& view) {
 }
 
 void Visibility::clear() {
-    std::fill(depths_.begin(), depths_.end(), std::numeric_limits<float>::infinity());
+    std::fill(depths_.begin(), depths_.end(), kFar);
     std::fill(ids_.begin(), ids_.end(), kNone);
 }
 
@@ -70,20 +72,19 @@ void Visibility::add(int index, F3 c, float radius) {
             s = span(((p1 - root) / -p2 + x0) / pixel + middle,
                      ((p1 + root) / -p2 + x0) / pixel + middle, view_.width);
         }
-        float* depths = &depths_[size_t(row) * stride_];
-        int* ids = &ids_[size_t(row) * stride_];
-        const float ahead = 1 + x0 * x0 + y * y0;
-        for (int first = s.first / kLanes * kLanes; first <= s.last; first += kLanes) {
-            float* const depth = depths + first;
-            int* const id = ids + first;
-            for (int k = 0; k < kLanes; ++k) {
-                const float dx = (float(first + k) - middle) * pixel - x0;
-                const float square = (p2 * dx + 2 * p1) * dx + p0;
-                const float t = c.z * (ahead + x0 * dx - std::sqrt(square > 0 ? square : 0));
-                const bool hit = square >= 0 && t > 0 && t < depth[k];
-                depth[k] = hit ? t : depth[k];
-                id[k] = hit ? index : id[k];
-            }
+        const int first = s.first / kLanes * kLanes;
+        const int count = (s.last - first + kLanes) / kLanes * kLanes;
+        float* __restrict const depth = &depths_[size_t(row) * stride_ + first];
+        int* __restrict const id = &ids_[size_t(row) * stride_ + first];
+        const float ahead = 1 + x0 * x0 + y * y0, begin = (float(first) - middle) * pixel - x0;
+        for (int k = 0; k < count; ++k) {
+            const float dx = begin + float(k) * pixel;
+            const float square = (p2 * dx + 2 * p1) * dx + p0;
+            const float t = c.z * (ahead + x0 * dx - std::sqrt(std::abs(square)));
+            // Bits and no choices, which would keep compilers from making vectors of the loop.
+            const int hit = -(int(square >= 0) & int(t > 0) & int(t < depth[k]));
+            id[k] = (index & hit) | (id[k] & ~hit);
+            depth[k] = hit ? t : depth[k];
         }
     }
 }

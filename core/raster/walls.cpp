@@ -127,7 +127,7 @@ void Wall::shadow(const Ball& ball, F3 lamp) {
     const F3 middle = ball.center - lamp * gap, aside = cross(normal_, down);
     splat(middle, down * (reach / slant), aside * reach, [=](F3 off) {
         const float along = dot(off, lamp), s2 = dot(off, off) - along * along;
-        return hidden(std::sqrt(s2 > 0 ? s2 : 0), r, wide);
+        return hidden(std::sqrt(positive(s2)), r, wide);
     });
 }
 
