@@ -6,6 +6,8 @@ from typing import Self
 
 from carom.errors import InputError
 from carom.methods import Method
+from carom.record import load
+from carom.record.again import resume
 from carom.record.recorder import record
 from carom.running import Running
 from carom.scene import Scene
@@ -59,6 +61,30 @@ class Keeping(Running):
         options = {"every": every, "checkpoint_every": checkpoint_every}
         recorder = record(self._motion, path, scene=self._scene, overwrite=overwrite, **options)
         self._motion.followers.append(recorder)
+
+    @classmethod
+    def resume(cls, path: str | Path) -> Self:
+        """Go on with a recording from its last frame, with the same bits, in the same file.
+
+        That a run was interrupted, killed too, leaves no trace: it comes to the same end.
+
+        Parameters
+        ----------
+        path : str or Path
+
+        Raises
+        ------
+        InputError
+            If it is no recording, or another version of carom comes to other bits.
+        FileError
+            If it cannot be read and written, is damaged, or another program writes it now.
+        """
+        sim = cls()
+        with load(path) as run:
+            recorder = resume(sim._motion, run)
+            sim._scene = run.scene
+        sim._motion.followers.append(recorder)
+        return sim
 
     def close(self) -> None:
         """Finish all files that are being written; the simulation may go on without them.

@@ -13,6 +13,7 @@ from carom.errors import InputError
 from carom.motion import Motion
 from carom.observe.batch import Moment
 from carom.record import hoomd, layout
+from carom.record.recording import Recording
 from carom.record.writer import Writer
 from carom.scene import Scene
 from carom.state import EVENT
@@ -61,11 +62,14 @@ class Recorder:
         if scene is not None:
             self._opening += layout.packed_scene(scene)
 
-    def go_on(self, scene: Scene | None, segment: int, origin: float, first: hoomd.Chunks) -> None:
-        """Go on with a file, from its last frame, which is now."""
-        about = layout.manifest(scene, self._every, self._checkpoint_frames)
+    def go_on(self, run: Recording, place: int) -> None:
+        """Go on with a file from its last frame, at which the motion is now."""
+        about = layout.manifest(run.scene, self._every, self._checkpoint_frames)
         self._opening = [(layout.MANIFEST, layout.as_json(about))]
-        self._segment, self._origin, self._first = segment, origin, first
+        self._segment, self._origin = (run.heads[place][name] for name in ("segment", "origin"))
+        standard = (name for name in run.file.sums(0) if not name.startswith("carom/"))
+        self._first = {name: run.file.read(0, name) for name in standard}
+        self._last_checkpoint = run.file.has(place, layout.CHECKPOINT)
         self._open, self._last_time = True, self._motion.time
         self._next_step()
 

@@ -36,6 +36,9 @@ class Writer:
 
         self.path = path
         self._safe = ""
+        self._lock: Any = None
+        if mode != "x":
+            self._take_lock()
         try:
             self._file = gsd.fl.open(
                 name=str(path),
@@ -46,11 +49,31 @@ class Writer:
             )
         except (OSError, RuntimeError) as error:
             raise self._refusal(error) from error
+        if mode == "x":
+            self._take_lock()
         self._error: Exception | None = None
         self._queue: queue.Queue[Any] = queue.Queue(WAITING)
         self._thread = threading.Thread(target=self._work, name="carom recorder", daemon=True)
         self._thread.start()
         atexit.register(self.close)  # a program that ends without close() keeps its frames
+
+    def _take_lock(self) -> None:
+        """Keep other programs from recording into this file, which would destroy it."""
+        try:
+            import fcntl
+        except ImportError:  # Windows
+            return
+        try:
+            self._lock = self.path.open("rb")  # closing it lets go
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            self._lock.close()
+            msg = f"another program is writing {self.path} now; wait for its end, or end it"
+            raise FileError(msg) from None
+        except FileNotFoundError:  # nothing there to be replaced
+            return
+        except OSError as error:
+            raise self._refusal(error) from error
 
     def chunk(self, name: str, data: NDArray[Any]) -> None:
         """Add a chunk to the frame; the array must stay as it is."""
@@ -66,6 +89,8 @@ class Writer:
         if self._thread.is_alive():
             self._queue.put((_CLOSE, None))
             self._thread.join()
+            if self._lock is not None:
+                self._lock.close()
         self._complain()
 
     def _put(self, job: tuple[str, Any]) -> None:
