@@ -13,21 +13,28 @@ from carom.world import CYLINDER, PLANE, SPHERE, World
 Chunks = dict[str, NDArray[Any]]
 
 
-def chunks(frame: Frame) -> Chunks:
-    """All that the schema says of a frame, in single precision; `image` is exact."""
-    state, world = frame.state, frame.world
+def standing(state: State) -> Chunks:
+    """What the schema says of the spheres that no motion changes."""
     kinds, kind = np.unique(state.species, return_inverse=True)
-    events = frame.collisions + frame.wall_collisions
-    with np.errstate(over="ignore"):  # beyond 3e38 it is inf there, and exact elsewhere
+    with np.errstate(over="ignore"):  # beyond 3e38 it is inf here, and exact in carom's chunks
         return {
-            "configuration/step": np.array([events], np.uint64),
             "configuration/dimensions": np.array([3], np.uint8),
-            "configuration/box": np.array([*lengths(state, world), 0, 0, 0], np.float32),
             "particles/N": np.array([len(state)], np.uint32),
             "particles/types": _names([str(label) for label in kinds.tolist()]),
             "particles/typeid": kind.reshape(-1).astype(np.uint32),
             "particles/mass": state.mass.astype(np.float32),
             "particles/diameter": (2 * state.radius).astype(np.float32),
+        }
+
+
+def moving(frame: Frame) -> Chunks:
+    """What it says of an instant, in single precision; `image` is exact."""
+    state = frame.state
+    events = frame.collisions + frame.wall_collisions
+    with np.errstate(over="ignore"):
+        return {
+            "configuration/step": np.array([events], np.uint64),
+            "configuration/box": np.array([*lengths(state, frame.world), 0, 0, 0], np.float32),
             "particles/position": state.position.astype(np.float32),
             "particles/velocity": state.velocity.astype(np.float32),
             "particles/image": np.ascontiguousarray(state.image, np.int32),

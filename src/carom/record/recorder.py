@@ -48,7 +48,8 @@ class Recorder:
         self._motion, self._writer = motion, writer
         self._every, self._checkpoint_frames = every, checkpoint_frames
         self._opening: list[tuple[str, NDArray[Any]]] = []  # goes into the next frame
-        self._first: hoomd.Chunks = {}
+        self._first: hoomd.Chunks = {}  # of the file's first frame
+        self._standing: hoomd.Chunks = {}
         self._segment, self._open = -1, False
         self._origin, self._step = 0.0, 0
         self._last_time, self._last_checkpoint = math.nan, False
@@ -69,6 +70,7 @@ class Recorder:
         self._segment, self._origin = (run.heads[place][name] for name in ("segment", "origin"))
         standard = (name for name in run.file.sums(0) if not name.startswith("carom/"))
         self._first = {name: run.file.read(0, name) for name in standard}
+        self._standing = self._own(hoomd.standing(self._motion.state))
         self._last_checkpoint = run.file.has(place, layout.CHECKPOINT)
         self._open, self._last_time = True, self._motion.time
         self._next_step()
@@ -98,7 +100,7 @@ class Recorder:
             (layout.BUILT, layout.packed(saved.built)),
             (layout.SURROUNDINGS, layout.packed_surroundings(saved.surroundings)),
         ]
-        self._write(checkpoint=True)
+        self._write(checkpoint=True, new_spheres=True)
         self._next_step()
 
     def events(self, records: NDArray[Any]) -> None:
@@ -142,7 +144,16 @@ class Recorder:
         finally:
             self._writer.close()
 
-    def _write(self, *, checkpoint: bool) -> None:
+    def _own(self, chunks: hoomd.Chunks) -> hoomd.Chunks:
+        """Those a frame needs of its own: readers take the others from the first frame."""
+        first = self._first
+        return {
+            name: chunk
+            for name, chunk in chunks.items()
+            if name not in first or not np.array_equal(chunk, first[name])
+        }
+
+    def _write(self, *, checkpoint: bool, new_spheres: bool = False) -> None:
         """Write a frame of now."""
         frame, writer = self._motion.frame(), self._writer
         for name, chunk in self._opening:
@@ -151,12 +162,13 @@ class Recorder:
         if self._waiting or not self._parts:
             self._write_events(np.concatenate([np.zeros(0, EVENT), *self._events]))
         self._events, self._waiting, self._parts = [], 0, 0
-        standard = hoomd.chunks(frame)
-        self._first = self._first or standard
+        if new_spheres:
+            self._standing = self._own(hoomd.standing(frame.state))
+        standard = self._standing | self._own(hoomd.moving(frame))
         for name, chunk in standard.items():
-            # Readers take what a frame does not have from the first one.
-            if chunk is self._first[name] or not np.array_equal(chunk, self._first[name]):
-                writer.chunk(name, chunk)
+            writer.chunk(name, chunk)
+        if not self._first:
+            self._first, self._standing = standard, {}
         for name in ("position", "velocity", "collision_count"):
             writer.chunk(layout.ARRAYS[name], getattr(frame.state, name))
         writer.chunk(layout.ARRAYS["resting"], frame.state.resting.view(np.uint8))
