@@ -4,19 +4,20 @@ import copy
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from types import TracebackType
+from pathlib import Path
 from typing import Self
 
 import numpy as np
 
 from carom.checks import number
 from carom.errors import InputError
+from carom.keeping import Keeping
 from carom.kept import Surroundings
 from carom.listing import Listing
 from carom.methods import TICKS_PER_SECOND, Method, engine_maker
 from carom.motion import Motion, Saved
 from carom.rules import Smooth
-from carom.running import Running, count
+from carom.running import count
 from carom.scene import Scene, Spheres
 from carom.state import State
 from carom.walls import Open, Wall
@@ -42,7 +43,7 @@ class Bookmark:
     saved: Saved = field(repr=False)
 
 
-class Simulation(Running):
+class Simulation(Keeping):
     """Spheres that move and collide.
 
     Parameters
@@ -65,6 +66,8 @@ class Simulation(Running):
         Length of one step of ``method="tick"``.
     keep_events : int
         How many of the newest events of a run `events` holds, 40 bytes each.
+    record : str or Path, optional
+        A file for everything that happens, see `record`; use the simulation with ``with`` then.
 
     Raises
     ------
@@ -93,6 +96,7 @@ class Simulation(Running):
         method: Method = "exact",
         tick: float = 1.0,
         keep_events: int = 1_000_000,
+        record: str | Path | None = None,
     ) -> None:
         changes = {"walls": walls, "rule": rule, "gravity": gravity, "collide": collide}
         changes = {name: value for name, value in changes.items() if value is not None}
@@ -106,6 +110,8 @@ class Simulation(Running):
         state = State.empty() if scene is None else described.build()[0]
         limit = count("keep_events", keep_events)
         self._motion = self._moved(state, Surroundings.of(described), limit)
+        if record is not None:
+            self.record(record)
 
     def _moved(self, state: State, around: Surroundings, keep_events: int) -> Motion:
         """What carries spheres on by this simulation's method."""
@@ -312,17 +318,6 @@ class Simulation(Running):
                 sys.stderr.write(f"to watch only: {view.watch_url}\n")
 
         serve(self, host=host, port=port, open_browser=open_browser, on_ready=announce)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        return None
 
     def __repr__(self) -> str:
         method = self.method if isinstance(self.method, str) else "its own"
