@@ -23,6 +23,7 @@ from carom.errors import (
 )
 from carom.observe.observable import log_times
 from carom.record import Recording, load
+from carom.rendering import render
 from carom.rules import Smooth
 from carom.scene import Camera, Scene, Spheres
 from carom.simulation import Bookmark, Simulation
@@ -59,6 +60,7 @@ __all__ = [
     "load",
     "log_times",
     "observe",
+    "render",
     "scenes",
 ]
 

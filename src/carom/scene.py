@@ -298,6 +298,16 @@ class Scene:
         fit.check(state, the_world, wall_names(self.walls))
         return state, the_world
 
+    def _repr_png_(self) -> bytes | None:
+        """Show a notebook its start; None, as notebooks expect, where that cannot be built."""
+        from carom.pictures.picture import small_png
+
+        try:
+            state, the_world = self.build()
+        except InputError:
+            return None
+        return small_png(state, the_world, self)
+
 
 def _only(kinds: Any, name: str, value: Any) -> None:
     if not isinstance(value, kinds):

@@ -16,9 +16,12 @@ from carom.kept import Surroundings
 from carom.listing import Listing
 from carom.methods import TICKS_PER_SECOND, Method, engine_maker
 from carom.motion import Motion, Saved
+from carom.pictures.look import Color, Theme
+from carom.pictures.painter import Style
+from carom.pictures.picture import Picture, paint, small_png
 from carom.rules import Smooth
 from carom.running import count
-from carom.scene import Scene, Spheres
+from carom.scene import Camera, Scene, Spheres
 from carom.state import State
 from carom.walls import Open, Wall
 

@@ -18,6 +18,7 @@ from carom.cli.comparing import compare as compare_both
 from carom.cli.comparing import side_by_side
 from carom.cli.observing import as_data as observed_data
 from carom.cli.observing import observables, sheets, tables
+from carom.cli.rendering import render_file
 from carom.cli.running import as_data, execute, goal, summary
 from carom.cli.sketching import sketch
 from carom.cli.source import parsed, source, whole
@@ -261,6 +262,7 @@ def compare(
 
 app.command()(sketch)
 app.command()(bench)
+app.command("render", context_settings=LOOSE)(render_file)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

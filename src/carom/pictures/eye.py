@@ -2,17 +2,29 @@
 
 import math
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from carom.pictures.room import Room
-from carom.scene import Camera
 from carom.state import Floats
 
 HALF_ANGLE = math.tan(math.radians(17))  #: half the picture's height at distance 1
 STEEPEST = 1.54  #: radians; at a right angle left and right lose their meaning
 AZIMUTH, HEIGHT = -0.42, 0.3  #: radians: two walls and the floor are seen
 FREE = 0.92  #: of the picture, for what must fit
+
+
+class Viewpoint(Protocol):
+    """A `carom.Camera`."""
+
+    @property
+    def position(self) -> tuple[float, float, float]:
+        """Where it stands."""
+
+    @property
+    def target(self) -> tuple[float, float, float]:
+        """What it looks at."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +65,7 @@ class Eye:
         return x, self.size[1] / 2 - float(line @ self.up) * scale
 
 
-def look(room: Room, gravity: Floats, size: tuple[int, int], camera: Camera | None) -> Eye:
+def look(room: Room, gravity: Floats, size: tuple[int, int], camera: Viewpoint | None) -> Eye:
     """See everything, or what a camera says."""
     above = _above(gravity)
     forward, side = compass(above)

@@ -1,15 +1,30 @@
 """Draws states: the core's raster, told what the page would show."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from carom._core import Raster
-from carom.pictures.eye import Eye, lamp, look
-from carom.pictures.look import THEMES, Color, Palette, Theme, colors_of, full_count, parts
+from carom.checks import nearest, number
+from carom.color import Colors
+from carom.errors import InputError, UnknownNameError
+from carom.pictures.eye import Eye, Viewpoint, lamp, look
+from carom.pictures.look import (
+    COLORS,
+    THEMES,
+    Color,
+    Palette,
+    Theme,
+    colors_of,
+    full_count,
+    is_paper,
+    parts,
+    scales,
+    some_colors,
+)
 from carom.pictures.room import Room
-from carom.scene import Camera
 from carom.state import Floats, State
 from carom.world import World
 
@@ -22,6 +37,7 @@ FLOOR_ONLY_FROM = 3000  #: spheres, from which only the floor gets spots under t
 CELL = 3  #: typical radii: the crowd's cells
 SOFTEST = 0.18  #: typical radii: a half-shadow's least radius
 DEEPEST = 0.3  #: of the room: half-shadows widen no more behind that
+SMALLEST, LARGEST = 16, 8192  #: pixels along a side
 SAMPLES = {"draft": 1, "good": 2}  #: along each side of a pixel, by quality
 
 
@@ -29,13 +45,41 @@ SAMPLES = {"draft": 1, "good": 2}  #: along each side of a pixel, by quality
 class Style:
     """How pictures look; see `carom.render` for what each means."""
 
-    size: tuple[int, int]
-    camera: Camera | None
-    color: Color
-    theme: Theme
-    shadows: bool
-    quality: str
-    wire: bool
+    size: tuple[int, int] = (1280, 720)
+    camera: Viewpoint | None = None
+    color: Color = "own"
+    theme: Theme = "dark"
+    shadows: bool = True
+    quality: str = "good"
+    wire: bool = False
+    paper: bool = False
+
+    def __post_init__(self) -> None:
+        for name, side in zip(("width", "height"), self.size, strict=True):
+            if number(f"the picture's {name}", side, at_least=SMALLEST, at_most=LARGEST) % 1:
+                msg = f"the picture's {name} is {side:g}; give whole pixels"
+                raise InputError(msg)
+        for what, value, known in (
+            ("coloring", self.color, COLORS),
+            ("theme", self.theme, THEMES),
+            ("quality", self.quality, SAMPLES),
+        ):
+            if value not in known:
+                msg = f"there is no {what} {value!r}{nearest(str(value), known)}"
+                raise UnknownNameError(msg)
+
+    @classmethod
+    def of(cls, scene: Any, *, color: Any = None, camera: Any = None, **rest: Any) -> "Style":
+        """The style that a scene (or None) asks for, where nothing else is said."""
+        if scene is None:
+            return cls(color=color or "own", camera=camera, **rest)
+        return cls(
+            color=color or scene.color,
+            camera=camera or scene.camera,
+            wire=scene.wire,
+            paper=is_paper(scene),
+            **rest,
+        )
 
     @property
     def palette(self) -> Palette:
@@ -53,20 +97,17 @@ class Painter:
     state : State
     world : World
     style : Style
-    full : float
-        Energy or speed at the end of the scale of colours.
     """
 
-    def __init__(self, state: State, world: World, style: Style, full: float) -> None:
+    def __init__(self, state: State, world: World, style: Style) -> None:
         self.style = style
-        self.full = full
+        ends = scales(state, world, paper=style.paper)
+        self._full = ends["full_speed" if style.color == "speed" else "full_energy"]
         self._period = world.period
         self.room = Room.of(state, world)
         self.eye = look(self.room, world.gravity, style.size, style.camera)
         cover = _cover(state.radius, self.room)
         values = _look(state, self.room, self.eye, style, cover)
-        if style.wire:
-            cover = 0.0
         self._raster = Raster(
             *style.size,
             SAMPLES[style.quality],
@@ -80,11 +121,18 @@ class Painter:
 
     def end_of_scale(self, state: State) -> float:
         """Energy, speed or number of collisions at the end of the scale of colours."""
-        return full_count(state.collision_count) if self.style.color == "collisions" else self.full
+        return full_count(state.collision_count) if self.style.color == "collisions" else self._full
+
+    def gamut(self, state: State) -> list[Pixels]:
+        """Pictures of a state in all the colours that its spheres may take."""
+        shares = (np.arange(len(state))[:, None] * 0.618 + [0, 0.25, 0.5, 0.75]) % 1
+        return [self._draw(state, some_colors(state, self.style.color, s)) for s in shares.T]
 
     def paint(self, state: State) -> Pixels:
         """Draw a picture, (height, width, 3) uint8."""
-        colors = colors_of(state, self.style.color, self.end_of_scale(state))
+        return self._draw(state, colors_of(state, self.style.color, self.end_of_scale(state)))
+
+    def _draw(self, state: State, colors: Colors) -> Pixels:
         place, radius = state.position, state.radius
         for axis in np.flatnonzero(self._period):
             # A sphere that reaches over the border is seen on both sides.
