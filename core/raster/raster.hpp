@@ -2,6 +2,7 @@
 #pragma once
 
 #include <mutex>
+#include <utility>
 
 #include "crowd.hpp"
 #include "picture.hpp"
@@ -34,8 +35,9 @@ private:
     Shading shading_;
     Visibility seen_;
     Casters casters_;
-    std::vector<Ball> balls_;
-    Frame still_;  // what lies behind all spheres
+    std::vector<std::pair<float, int>> order_;  // spheres by distance
+    std::vector<Ball> balls_;                   // from near to far
+    Frame still_;                               // what lies behind all spheres
     Frame frame_;
     std::mutex busy_;
 };

@@ -122,7 +122,7 @@ void Shading::light(Batch& b, const std::vector<Ball>& balls, const Casters& cas
         b.left[k] = ball.left;
         slope_x[k] = ball.left_slope.x, slope_y[k] = ball.left_slope.y;
         slope_z[k] = ball.left_slope.z;
-        b.seen[k] = 1;
+        b.seen[k] = casters.any() ? casters.left(b.ball[k]) : 1;
     }
     for (int k = 0; k < kBatch; ++k) {
         const float x = b.x[k], y = b.y[k];

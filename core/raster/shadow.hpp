@@ -27,26 +27,33 @@ inline float hidden(float s, float r, float wide) {
 
 class Casters {
 public:
-    // lamp: unit vector towards it.
-    void find(const std::vector<Ball>& balls, const Look& look, F3 lamp);
+    // lamp: unit vector towards it. Asks only for balls that are seen.
+    void find(const std::vector<Ball>& balls, const std::vector<uint8_t>& seen, const Look& look,
+              F3 lamp);
     void clear() { first_.clear(); }
 
     bool any() const { return !first_.empty(); }
+    // Those whose shadows change within the ball.
     const int* begin(int ball) const { return &all_[0] + first_[ball]; }
     const int* end(int ball) const { return &all_[0] + first_[ball + 1]; }
+    // What the others leave of the lamp, for the whole ball.
+    float left(int ball) const { return left_[ball]; }
 
 private:
     void sort_into_cells(const std::vector<Ball>& balls, const Look& look);
+    float ask(int i, const std::vector<Ball>& balls, const Look& look);
 
     struct Place {
         float a, b, height;  // across the light, and towards the lamp
     };
     std::vector<Place> places_;
-    float low_[2] = {}, per_[2] = {}, lowest_ = 0;
+    std::vector<int> order_;  // from the lamp on
+    float low_[2] = {}, per_[2] = {};
     int cells_ = 1;                     // along each axis
-    std::vector<int> starts_, inside_;  // spheres by cell
-    std::vector<int> seen_;             // the sphere that last looked at this one
+    std::vector<int> starts_, inside_;  // spheres by cell, from the lamp on
+    std::vector<int> asked_;            // by whom last
     std::vector<int> first_, all_;
+    std::vector<float> left_;
 };
 
 }  // namespace carom::raster

@@ -47,6 +47,23 @@ void Visibility::clear() {
     std::fill(ids_.begin(), ids_.end(), kNone);
 }
 
+// Whether all samples around something see what is nearer. distance: that of its nearest point.
+bool Visibility::is_hidden(const Bounds& bounds, float distance) const {
+    const auto least = [](float a, float b) {  // distance of an interval from 0
+        return a * b <= 0 ? 0 : std::min(std::abs(a), std::abs(b));
+    };
+    const float x = least(view_.ray_x(float(bounds.x.first)), view_.ray_x(float(bounds.x.last)));
+    const float y = least(view_.ray_y(float(bounds.y.first)), view_.ray_y(float(bounds.y.last)));
+    const float nearest = distance * std::sqrt(1 + x * x + y * y);  // a depth: distance times |ray|
+    for (int row = bounds.y.first; row <= bounds.y.last; ++row) {
+        const float* const depth = depths(row);
+        int open = 0;
+        for (int k = bounds.x.first; k <= bounds.x.last; ++k) open |= int(depth[k] > nearest);
+        if (open) return false;
+    }
+    return true;
+}
+
 // With the ray d = (x, y, 1) and its difference e to the ray through the centre c, the ray meets
 // the sphere where t d² = d·c - sqrt(d² r² - |e × c|²). That root has no small difference of
 // large numbers in it, so single precision will do. All is divided by c.z.
@@ -57,6 +74,7 @@ void Visibility::add(int index, F3 c, float radius) {
     const float r = std::max(radius / c.z, 0.6f * pixel), r2 = r * r;
     const float x0 = c.x / c.z, y0 = c.y / c.z;
     const Bounds bounds = around(view_, c, r * c.z, 0);
+    if (is_hidden(bounds, std::sqrt(dot(c, c)) - r * c.z)) return;
     const bool bounded = r < 0.95f;  // else its outline need not be an ellipse
     const float middle = 0.5f * float(view_.width) - 0.5f;
     const float p2 = r2 - 1 - y0 * y0;

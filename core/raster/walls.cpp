@@ -9,6 +9,12 @@ namespace {
 
 constexpr float kNearWall = 3.5f;  // radii from the wall at which a spot has faded away
 
+// How much of an endless plane has not faded.
+float rim(float u, float v) {
+    const float mu = 2 * u - 1, mv = 2 * v - 1;
+    return smoothstep(0, 1, 1 - std::sqrt(mu * mu + mv * mv));
+}
+
 // The pixels around points; everything if one is not before the eye.
 template <class Points>
 Bounds around_points(const View& view, const Points& points) {
@@ -26,10 +32,6 @@ Bounds around_points(const View& view, const Points& points) {
     return {span(x[0] - 1, x[1] + 1, view.width), span(y[0] - 1, y[1] + 1, view.height)};
 }
 
-F3 cross(F3 a, F3 b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 }  // namespace
 
 Wall::Wall(const View& view, const Look& look, const Face& face)
@@ -40,7 +42,9 @@ Wall::Wall(const View& view, const Look& look, const Face& face)
       u_(view.direction(face.u)),
       v_(view.direction(face.v)),
       normal_(view.direction(face.normal)),
-      level_(dot(normal_, corner_)) {
+      level_(dot(normal_, corner_)),
+      shadows_(float(face.side_u), float(face.side_v), look.soft),
+      spots_(float(face.side_u), float(face.side_v), look.soft) {
     along_u_ = (u_ * level_ - normal_ * dot(u_, corner_)) * float(1 / face.side_u);
     along_v_ = (v_ * level_ - normal_ * dot(v_, corner_)) * float(1 / face.side_v);
     const F3 a = u_ * float(face.side_u), b = v_ * float(face.side_v);
@@ -64,8 +68,7 @@ inline Wall::Point Wall::at(float x, float y) const {
     const float in_u = (1 - std::abs(mu)) / (2 * std::sqrt(ux * ux + uy * uy)) + 0.5f;
     const float in_v = (1 - std::abs(mv)) / (2 * std::sqrt(vx * vx + vy * vy)) + 0.5f;
     p.cover = level_ * per > 0 ? clamp(in_u) * clamp(in_v) : 0;
-    const float rim = clamp(1 - std::sqrt(mu * mu + mv * mv));
-    p.rim = face_.fade > 0 ? rim * rim * (3 - 2 * rim) : 1;
+    p.rim = face_.fade > 0 ? rim(p.u, p.v) : 1;
     return p;
 }
 
@@ -97,38 +100,21 @@ void Wall::paint(Frame& frame) const {
     }
 }
 
-// Multiplies the light of the wall around a place, as far as the vectors a and b reach.
-template <class Dark>
-void Wall::splat(F3 middle, F3 a, F3 b, Dark dark) {
-    const F3 corners[4] = {middle - a - b, middle - a + b, middle + a - b, middle + a + b};
-    const Bounds bounds = around_points(view_, corners);
-    const int first = std::max(bounds.x.first, bounds_.x.first);
-    const int last = std::min(bounds.x.last, bounds_.x.last);
-    for (int j = std::max(bounds.y.first, bounds_.y.first);
-         j <= std::min(bounds.y.last, bounds_.y.last); ++j) {
-        float* const light = &light_[size_t(j) * view_.width];
-        const float y = view_.ray_y(float(j));
-        for (int i = first; i <= last; ++i) {
-            const float x = view_.ray_x(float(i));
-            const float t = level_ / (normal_.x * x + normal_.y * y + normal_.z);
-            light[i] *= 1 - dark(F3{t * x - middle.x, t * y - middle.y, t - middle.z});
-        }
-    }
-}
-
+// With the line to the lamp l, places that a ball's shadow reaches are those at a distance s from
+// that line through the ball: s² = d² - (d·l)², an ellipse on the wall.
 void Wall::shadow(const Ball& ball, F3 lamp) {
     const float slant = dot(lamp, normal_);
     const float gap = (dot(normal_, ball.center) - level_) / slant;
     const float r = ball.radius, wide = half_shadow(look_, gap), reach = r + wide;
     if (gap <= 0 || r * r < kFaintest * wide * wide) return;
-    F3 down = lamp - normal_ * slant;  // along the wall, as the light goes
-    const float size = std::sqrt(dot(down, down));
-    down = size > 1e-3f ? down * (1 / size) : u_;
-    const F3 middle = ball.center - lamp * gap, aside = cross(normal_, down);
-    splat(middle, down * (reach / slant), aside * reach, [=](F3 off) {
-        const float along = dot(off, lamp), s2 = dot(off, off) - along * along;
-        return hidden(std::sqrt(positive(s2)), r, wide);
-    });
+    const F3 foot = ball.center - lamp * gap - corner_;
+    const float lu = dot(lamp, u_), lv = dot(lamp, v_), per = 1 / (slant * slant);
+    shadows_.splat(dot(foot, u_), dot(foot, v_), reach * std::sqrt(1 + lu * lu * per),
+                   reach * std::sqrt(1 + lv * lv * per), wide, [=](float du, float dv) {
+                       const float along = du * lu + dv * lv;
+                       const float s2 = du * du + dv * dv - along * along;
+                       return hidden(std::sqrt(positive(s2)), r, wide);
+                   });
 }
 
 // How much of the sky a ball hides from a place on a wall: r² h/(ρ² + h²)^(3/2).
@@ -138,30 +124,42 @@ void Wall::spot(const Ball& ball) {
     const float high = std::max(height / r, 1.0f), reach = (0.8f + high) * r;
     const float fade = clamp((kNearWall - high) / (kNearWall - 1));
     const float most = float(face_.contact) * fade, per = 1 / r, per_reach = 1 / (reach * reach);
-    splat(ball.center - normal_ * height, u_ * reach, v_ * reach, [=](F3 off) {
-        const float away2 = dot(off, off), d2 = away2 * per * per + high * high;
+    const F3 foot = ball.center - corner_;
+    spots_.splat(dot(foot, u_), dot(foot, v_), reach, reach, 0.3f * r, [=](float du, float dv) {
+        const float away2 = du * du + dv * dv, d2 = away2 * per * per + high * high;
         return most * high / (d2 * std::sqrt(d2)) * clamp(1 - away2 * per_reach);
     });
 }
 
-void Wall::darken(const std::vector<Ball>& balls, Frame& frame) {
+void Wall::darken(const std::vector<Ball>& balls, const Visibility& seen, Frame& frame) {
     const F3 lamp = view_.direction(look_.lamp);
     const bool shadows = look_.shadows && face_.shade > 0 && dot(lamp, normal_) > 0.05f;
     if (!shadows && face_.contact <= 0) return;
-    light_.assign(size_t(view_.width) * view_.height, 1.0f);
-    if (shadows)
-        for (const Ball& ball : balls) shadow(ball, lamp);
+    shadows_.clear();
+    spots_.clear();
+    for (const Ball& ball : balls) {
+        if (shadows) shadow(ball, lamp);
+        if (face_.contact > 0) spot(ball);
+    }
+    shadows_.merge();
+    spots_.merge();
     const float shade = float(face_.shade) * look_.shadowed;
-    for (float& light : light_) light = 1 - shade * (1 - light);
-    if (face_.contact > 0)
-        for (const Ball& ball : balls) spot(ball);
+    std::vector<float>& light = spots_.finest();
+    const std::vector<float>& lamp_light = shadows_.finest();
+    for (size_t k = 0; k < light.size(); ++k) light[k] *= 1 - shade * (1 - lamp_light[k]);
+    const int samples = view_.samples;
     for (int j = bounds_.y.first; j <= bounds_.y.last; ++j) {
         float* const pixels = frame.row(j);
-        const float* const light = &light_[size_t(j) * view_.width];
+        const float y = view_.ray_y(float(j));
         for (int i = bounds_.x.first; i <= bounds_.x.last; ++i) {
-            if (light[i] == 1) continue;
-            const Point p = at(view_.ray_x(float(i)), view_.ray_y(float(j)));
-            const float factor = 1 - p.cover * p.rim * (1 - light[i]);
+            if (seen.covered(i, j, samples)) continue;
+            const float x = view_.ray_x(float(i));
+            const float per = 1 / (normal_.x * x + normal_.y * y + normal_.z);
+            const float u = (along_u_.x * x + along_u_.y * y + along_u_.z) * per;
+            const float v = (along_v_.x * x + along_v_.y * y + along_v_.z) * per;
+            if (!(u >= 0 && u <= 1 && v >= 0 && v <= 1 && level_ * per > 0)) continue;
+            float factor = spots_.at(u, v);
+            if (face_.fade > 0) factor = 1 - rim(u, v) * (1 - factor);
             for (int c = 0; c < 3; ++c) pixels[3 * i + c] *= factor;
         }
     }

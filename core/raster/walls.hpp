@@ -1,6 +1,7 @@
 // The walls: flat ones with a fine grid and the shadows that fall on them, and lines.
 #pragma once
 
+#include "light_map.hpp"
 #include "shadow.hpp"
 #include "visibility.hpp"
 
@@ -13,8 +14,8 @@ public:
 
     // A breath of colour, lightest in the middle, and the grid.
     void paint(Frame& frame) const;
-    // What spheres take away of its light.
-    void darken(const std::vector<Ball>& balls, Frame& frame);
+    // What spheres take away of its light, where it is seen.
+    void darken(const std::vector<Ball>& balls, const Visibility& seen, Frame& frame);
 
 private:
     // Where a ray meets it.
@@ -27,8 +28,6 @@ private:
 
     void shadow(const Ball& ball, F3 lamp);
     void spot(const Ball& ball);
-    template <class Dark>
-    void splat(F3 middle, F3 a, F3 b, Dark dark);
 
     View view_;
     Look look_;
@@ -37,7 +36,7 @@ private:
     F3 along_u_, along_v_;  // u = along_u·d / normal·d for a ray d
     float level_;           // normal · corner
     Bounds bounds_;
-    std::vector<float> light_;
+    LightMap shadows_, spots_;
 };
 
 // A line, where no sphere is before it.

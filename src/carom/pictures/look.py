@@ -71,9 +71,9 @@ def parts(color: int | Colors) -> Floats:
 
 def whole(rgb: Floats) -> Colors:
     """The same packed again."""
-    levels = np.floor(np.clip(rgb, 0, 1) * 255 + 0.5).astype(np.uint32)
-    colors: Colors = levels[..., 0] << 16 | levels[..., 1] << 8 | levels[..., 2]
-    return colors
+    levels: Colors = np.floor(np.clip(rgb, 0, 1) * 255 + 0.5).astype(np.uint32)
+    shifted: Colors = levels << np.array([16, 8, 0], np.uint32)
+    return np.asarray(shifted.sum(axis=-1), np.uint32)
 
 
 def saturated(own: Floats, saturation: Floats) -> Floats:

@@ -11,7 +11,6 @@ from carom.pictures.png import png
 from carom.state import State
 from carom.world import World
 
-
 SMALL = (640, 400)  #: pixels of a picture that a notebook shows unasked
 
 
