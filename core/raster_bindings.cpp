@@ -23,11 +23,12 @@ using Eye = nb::ndarray<const double, nb::shape<4, 3>, nb::c_contig, nb::device:
 using FaceRows = nb::ndarray<const double, nb::shape<-1, 23>, nb::c_contig, nb::device::cpu>;
 using EdgeRows = nb::ndarray<const double, nb::shape<-1, 8>, nb::c_contig, nb::device::cpu>;
 using Three = std::array<double, 3>;
+using Values = nb::typed<nb::dict, nb::str, nb::object>;
 
 Vec3 three(const double* a) { return {a[0], a[1], a[2]}; }
 
 // Everything about light and colours by name, which reads better than a row of numbers.
-raster::Look look_from(const nb::dict& values) {
+raster::Look look_from(const Values& values) {
     raster::Look look;
     const auto vector = [&](const char* name) {
         return three(nb::cast<Three>(values[name]).data());
@@ -52,7 +53,7 @@ raster::Look look_from(const nb::dict& values) {
 }
 
 auto make_raster(int width, int height, int samples, double pixel, const Eye& eye,
-                 const nb::dict& values, const FaceRows& faces, const EdgeRows& edges,
+                 const Values& values, const FaceRows& faces, const EdgeRows& edges,
                  std::vector<double> shells) {
     if (width < 1 || height < 1 || width > 16384 || height > 16384 || samples < 1 || samples > 2)
         throw nb::value_error("width and height from 1 to 16384, samples 1 or 2");

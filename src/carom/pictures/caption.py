@@ -14,6 +14,7 @@ from carom.pictures.look import COLLISIONS, SPEEDS, along, parts, saturated
 from carom.pictures.painter import Pixels, Style
 from carom.state import Floats, State
 
+LEAST = 11.5  #: size of letters in pixels; smaller ones run together
 HUES = 5  #: rows of the energy scale: a sphere keeps its own hue
 #: The font that comes with Pillow has little more than ASCII.
 PLAIN = str.maketrans({"×": "x", "·": "-", "–": "-", "−": "-", "’": "'", "π": "pi", "ß": "ss"})
@@ -107,7 +108,7 @@ class Caption:
         self._unit = min(style.size[1], 1.2 * style.size[0]) / 720
         self._unit *= max(1.0, (480 / style.size[1]) ** 0.5)
         self._fonts = {
-            name: font.load_default(max(9.0, size * self._unit))
+            name: font.load_default(max(LEAST, size * self._unit))
             for name, size in (("title", 25), ("clock", 22), ("legend", 17))
         }
         self._decimals = min(9, max(2, math.ceil(-math.log10(step) - 1e-9))) if step > 0 else 2

@@ -155,7 +155,7 @@ def _cover(radius: Floats, room: Room) -> float:
 
 def _look(
     state: State, room: Room, eye: Eye, style: Style, cover: float
-) -> dict[str, float | bool | list[float]]:
+) -> dict[str, object]:
     palette = style.palette
     typical = float(np.sort(state.radius)[len(state) // 2]) if len(state) else 1.0
     towards = lamp(eye, room)
