@@ -20,7 +20,7 @@ export function collisionsBetween(first, second, scene) {
   const h = second.t - first.t;
   const { about, radius, mass, n } = scene;
   const period = /** @type {Vec3} */ (about.period);
-  const hits = [];
+  /** @type {{i: number, s: number, x: Vec3, kick: Vec3}[]} */ const hits = [];
   for (let i = 0; i < n; i++) {
     if (first.counts[i] === second.counts[i]) continue;
     const [a, b] = [momentOf(first, i), momentOf(second, i)];
