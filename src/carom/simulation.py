@@ -4,7 +4,7 @@ import copy
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -312,6 +312,33 @@ class Simulation(Keeping):
                 sys.stderr.write(f"to watch only: {view.watch_url}\n")
 
         serve(self, host=host, port=port, open_browser=open_browser, on_ready=announce)
+
+    def view(self, *, color: str | None = None, height: int = 480) -> Any:
+        """Show it live in a notebook's cell; needs ``pip install carom[notebook]``.
+
+        The page's buttons and sliders act on this simulation. While a cell runs the view waits,
+        and afterwards shows what the cell has done.
+
+        Parameters
+        ----------
+        color : str, optional
+            "energy", "speed", "collisions", "species" or "own"; as the scene asks for if left out.
+        height : int
+            Of the view, in pixels.
+
+        Returns
+        -------
+        anywidget.AnyWidget
+            Any number of them can show one simulation.
+
+        Raises
+        ------
+        InputError
+            If a value cannot be used, or anywidget is not installed.
+        """
+        from carom.view import notebook
+
+        return notebook.live(self, color=color, height=height)
 
     def __repr__(self) -> str:
         method = self.method if isinstance(self.method, str) else "its own"

@@ -82,7 +82,7 @@ export class Page {
     this.theme = new Theme(changed);
     this.look = new Look(changed);
     this.readout = new Readout();
-    this.plots = new Plots(at("plots"));
+    this.plots = new Plots(at("plots"), mode !== "replay");
     const changes = mode !== "replay"; // whether people can change the motion
     this.hands = new Hands({ canvas: this.canvas, camera: this.camera, send, toast, fit, changes });
     this.inspector = new Inspector(at("inspector"), this.hands);
