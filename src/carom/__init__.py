@@ -22,6 +22,7 @@ from carom.errors import (
     UnknownNameError,
 )
 from carom.observe.observable import log_times
+from carom.record import Recording, load
 from carom.rules import Smooth
 from carom.scene import Camera, Scene, Spheres
 from carom.simulation import Bookmark, Simulation
@@ -44,6 +45,7 @@ __all__ = [
     "OverlapError",
     "Periodic",
     "Plane",
+    "Recording",
     "RunError",
     "Scene",
     "Simulation",
@@ -54,6 +56,7 @@ __all__ = [
     "UnknownNameError",
     "Vector",
     "__version__",
+    "load",
     "log_times",
     "observe",
     "scenes",
