@@ -18,14 +18,14 @@ from carom.view import bundle
 from carom.view.driver import Driver
 from carom.view.files import FOLDER
 from carom.view.protocol import Command, decode_command, encode_text
-from carom.view.replay import COLORS
+from carom.view.replay import COLORS, Recorded, even_times, replay
 from carom.view.snapshot import Snapshot
 from carom.view.viewable import Viewable
 from carom.view.wire import MAX_CREDITS
 
 HEIGHT = 480  #: pixels
 LOWEST, HIGHEST = 200, 4000
-MISSING = "views in notebooks need anywidget: pip install 'carom[notebook]'"
+MISSING = "view() needs anywidget: pip install carom[notebook]"
 
 Send = Callable[[dict[str, str], list[bytes]], None]
 
@@ -55,9 +55,11 @@ def live(sim: Viewable, *, color: str | None = None, height: int = HEIGHT) -> An
     return widget
 
 
-def recorded(page: str, *, title: str, height: int = HEIGHT) -> Any:
-    """Make a widget of a replay's page; it needs no kernel any more."""
-    return _make(page, title, height, live=False)
+def recorded(run: Recorded, *, color: str | None = None, height: int = HEIGHT) -> Any:
+    """Make a widget that plays a recording; it needs no kernel any more."""
+    _widget_class()  # what is missing is told before work is done
+    title = run.scene.title if run.scene is not None else ""
+    return _make(replay(run, even_times(run), color=color), title, height, live=False)
 
 
 class Host:
@@ -170,17 +172,16 @@ def _look(*_: object) -> None:
 
 def _make(page: str, title: str, height: int, *, live: bool) -> Any:
     pixels = round(number("height", height, at_least=LOWEST, at_most=HIGHEST))
-    try:
-        kind = _widget_class()
-    except ImportError as error:
-        raise InputError(MISSING) from error
-    return kind(page=page, title=title or "carom", height=pixels, live=live)
+    return _widget_class()(page=page, title=title or "carom", height=pixels, live=live)
 
 
 @cache
 def _widget_class() -> Any:
-    import anywidget
-    import traitlets
+    try:
+        import anywidget
+        import traitlets
+    except ImportError as missing:
+        raise InputError(MISSING) from missing
 
     class View(anywidget.AnyWidget):
         """A page in a frame of its own."""

@@ -209,7 +209,8 @@ def _quanta(reel: Reel, smallest: float) -> tuple[float, float]:
 
 
 def _rounded(values: Floats) -> NDArray[np.int64]:
-    return np.floor(values + 0.5).astype(np.int64)
+    # What lies beyond is refused later.
+    return np.floor(np.clip(values, -4.0 * LARGEST, 4.0 * LARGEST) + 0.5).astype(np.int64)
 
 
 def _folded(values: NDArray[np.int64]) -> NDArray[Any]:

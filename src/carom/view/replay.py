@@ -1,6 +1,7 @@
 """Replays: a motion as one file that any browser plays from the disk, without carom or network."""
 
 import base64
+import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +20,8 @@ from carom.world import World
 
 #: Spheres times frames; more would fill the memory of a phone.
 MOST = 5_000_000
+#: Frames per second at speed 1, and how many, where nobody asks for others.
+PER_SECOND, MOST_FRAMES = 30, 6000
 ENTRY = "replay.js"
 
 
@@ -78,6 +81,21 @@ class Source(Protocol):
     @property
     def frames(self) -> Callable[..., Iterator[Any]]:
         """``frames(at=times)`` gives an `Instant` for each time."""
+
+
+class Recorded(Source, Protocol):
+    """A source that has an end."""
+
+    def __getitem__(self, index: int) -> Any:
+        """One of its frames."""
+
+    @property
+    def start(self) -> float:
+        """Time of the first frame."""
+
+    @property
+    def end(self) -> float:
+        """Time of the last frame."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,6 +166,14 @@ def write_replay(
     except OSError as error:
         msg = f"{path} cannot be written: {error.strerror or error}"
         raise FileError(msg) from error
+
+
+def even_times(run: Recorded) -> Floats:
+    """Times from the start of a recording to its end: thirty a second, fewer if it is long."""
+    wanted = math.ceil((run.end - run.start) / run.pace * PER_SECOND) + 1
+    frames = max(2, min(wanted, MOST_FRAMES, MOST // max(1, len(run[0]))))
+    times: Floats = np.linspace(run.start, run.end, frames)
+    return times
 
 
 def replay(
