@@ -14,6 +14,7 @@ from carom.errors import InputError
 from carom.keeping import Keeping
 from carom.kept import Surroundings
 from carom.listing import Listing
+from carom.markup import html_table
 from carom.methods import TICKS_PER_SECOND, Method, engine_maker
 from carom.motion import Motion, Saved
 from carom.rules import Smooth
@@ -318,6 +319,19 @@ class Simulation(Keeping):
                 sys.stderr.write(f"to watch only: {view.watch_url}\n")
 
         serve(self, host=host, port=port, open_browser=open_browser, on_ready=announce)
+
+    def _repr_html_(self) -> str:
+        rows = [
+            ("spheres", f"{len(self)}"),
+            ("time", f"{self.time:.6g}"),
+            ("collisions", f"{self.collisions}, {self.wall_collisions} with walls"),
+            ("kinetic energy", f"{self.kinetic_energy:.6g}"),
+            ("temperature", f"{self.temperature:.6g}"),
+            ("relative change of energy", f"{self.energy_drift:.1e}"),
+            ("method", self._method if isinstance(self._method, str) else repr(self._method)),
+        ]
+        title = "" if self._scene is None else self._scene.title
+        return html_table(title or "Simulation", rows)
 
     def view(self, *, color: str | None = None, height: int = 480) -> Any:
         """Show it live in a notebook's cell; needs ``pip install carom[notebook]``.

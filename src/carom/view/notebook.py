@@ -192,4 +192,7 @@ def _widget_class() -> Any:
         height = traitlets.Int().tag(sync=True)
         live = traitlets.Bool().tag(sync=True)
 
+        def __repr__(self) -> str:
+            return f"<view of {self.title}>"
+
     return View

@@ -40,7 +40,7 @@ from carom.view.wire import REEL_COLUMNS, REEL_FORMAT, STILL
 
 STEPS = 2**16  #: quanta of length across everything that is shown
 FINE = 64  #: quanta of length in the smallest radius, at least
-SLOW = 4  #: quanta of velocity by which a sphere moves one quantum of length per frame
+SLOW = 32  #: quanta of velocity by which a sphere moves one quantum of length per frame
 LARGEST = 2**30  #: of any number written
 
 Unsigned = NDArray[np.uint32]

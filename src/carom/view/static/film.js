@@ -19,6 +19,7 @@ export class Film {
     this.k = 0; // the last keyframe that is not after t
     this.epoch = 0; // counts jumps
     this.told = false; // the listener knows how things stand
+    this.#mark();
     /** @type {Listener | null} */ this.listener = null;
     /** Told when the place in the film has changed. @type {() => void} */ this.moved = () => {};
   }
@@ -65,7 +66,7 @@ export class Film {
       this.#jump(this.start);
     } else if (op === "step") this.#toCollision(1);
     else if (op === "back") this.#toCollision(-1);
-    this.told = false;
+    this.#tell();
   }
 
   get #ended() {
@@ -143,9 +144,14 @@ export class Film {
 
   #tell() {
     this.told = true;
+    this.#mark();
+    this.listener?.frame(this.newest);
+  }
+
+  /** Write how things stand into the keyframes around now, as a server would. */
+  #mark() {
     const { playing, speed, epoch } = this;
     const state = { playing, speed, epoch, reached: speed, reversed: this.way < 0 };
     for (const keyframe of this.keyframes.slice(this.k, this.k + 2)) Object.assign(keyframe, state);
-    this.listener?.frame(this.newest);
   }
 }

@@ -11,7 +11,7 @@ import { REEL_COLUMNS, REEL_FORMAT, STILL } from "./wire.js";
 
 const STEPS = 2 ** 16; // quanta of length across everything that is shown
 const FINE = 64; // quanta of length in the smallest radius, at least
-const SLOW = 4; // quanta of velocity by which a sphere moves one quantum of length per frame
+const SLOW = 32; // quanta of velocity by which a sphere moves one quantum of length per frame
 const LARGEST = 2 ** 30; // of any number written
 
 /** Where every sphere is by what was written so far: x of all, then y, then z. */
