@@ -19,7 +19,7 @@ from carom.scene import Camera, Scene
 from carom.state import Floats
 
 SECONDS = 10  #: of a film of a simulation, if nothing is said
-FPS = {".gif": 25.0, ".mp4": 30.0}
+FPS = {".gif": 25.0, ".mp4": 30.0, ".html": 30.0}
 MOST = 200_000  #: pictures in a film: almost two hours
 
 
@@ -73,10 +73,12 @@ def render(
     caption: bool = True,
     progress: Callable[[Progress], object] | None = None,
 ) -> None:
-    """Write a picture (``.png``) or a film (``.mp4``, ``.gif``); needs no browser.
+    """Write a picture (``.png``), a film (``.mp4``, ``.gif``) or a replay (``.html``).
 
-    What is seen is what the live view shows. Films need ``pip install carom[video]``. Ctrl-C,
-    or a run that cannot go on, leaves a film of what was drawn so far.
+    What is seen is what the live view shows, drawn without a browser. Films need
+    ``pip install carom[video]``. Ctrl-C, or a run that cannot go on, leaves a film of what was
+    drawn so far. A replay is a page to look around in: of the options below only times, speed,
+    fps and color matter to it.
 
     Parameters
     ----------
@@ -106,7 +108,7 @@ def render(
     caption : bool
         Draw the title, the clock and the meaning of colours into the picture.
     progress : callable, optional
-        Called with a `Progress` after each picture of a film.
+        Called with a `Progress` after each picture of a film or replay.
 
     Raises
     ------
@@ -245,6 +247,22 @@ def _film(job: _Job) -> None:
                 job.progress(Progress(done, len(times), frame.time))
 
 
+def _replay(job: _Job) -> None:
+    from carom.view.replay import write_replay
+
+    times = job.times(FPS[job.suffix] if job.fps is None else job.fps)
+    times = np.append(times, 2 * times[-1] - times[-2] if len(times) > 1 else times[0] + 1)
+    done = 0
+
+    def show(time: float) -> None:
+        nonlocal done
+        done += 1
+        if job.progress is not None:
+            job.progress(Progress(done, len(times), time))
+
+    write_replay(job.source, job.path, times, color=job.style.color, speed=job.speed, progress=show)
+
+
 class _Artist:
     """Draws frames of one film: a painter and its words."""
 
@@ -277,4 +295,9 @@ class _Artist:
 
 
 #: What writes a file, by the ending of its name.
-WRITERS: dict[str, Callable[[_Job], None]] = {".mp4": _film, ".gif": _film, ".png": _picture}
+WRITERS: dict[str, Callable[[_Job], None]] = {
+    ".mp4": _film,
+    ".gif": _film,
+    ".png": _picture,
+    ".html": _replay,
+}

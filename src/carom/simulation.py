@@ -5,23 +5,21 @@ import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
 from carom.checks import number
 from carom.errors import InputError
-from carom.keeping import Keeping
 from carom.kept import Surroundings
 from carom.listing import Listing
+from carom.markup import html_picture, html_table
 from carom.methods import TICKS_PER_SECOND, Method, engine_maker
 from carom.motion import Motion, Saved
-from carom.pictures.look import Color, Theme
-from carom.pictures.painter import Style
-from carom.pictures.picture import Picture, paint, small_png
 from carom.rules import Smooth
 from carom.running import count
-from carom.scene import Camera, Scene, Spheres
+from carom.scene import Scene, Spheres
+from carom.showing import Showing
 from carom.state import State
 from carom.walls import Open, Wall
 
@@ -46,7 +44,7 @@ class Bookmark:
     saved: Saved = field(repr=False)
 
 
-class Simulation(Keeping):
+class Simulation(Showing):
     """Spheres that move and collide.
 
     Parameters
@@ -322,50 +320,45 @@ class Simulation(Keeping):
 
         serve(self, host=host, port=port, open_browser=open_browser, on_ready=announce)
 
-    def picture(
-        self,
-        *,
-        size: tuple[int, int] = (1280, 720),
-        camera: Camera | None = None,
-        color: Color | None = None,
-        theme: Theme = "dark",
-        shadows: bool = True,
-        quality: str = "good",
-        caption: bool = True,
-    ) -> Picture:
-        """Draw it as it is now; `carom.render` explains the options, and makes films.
+    def _repr_html_(self) -> str:
+        rows = [
+            ("spheres", f"{len(self)}"),
+            ("time", f"{self.time:.6g}"),
+            ("collisions", f"{self.collisions}, {self.wall_collisions} with walls"),
+            ("kinetic energy", f"{self.kinetic_energy:.6g}"),
+            ("temperature", f"{self.temperature:.6g}"),
+            ("relative change of energy", f"{self.energy_drift:.1e}"),
+            ("method", self._method if isinstance(self._method, str) else repr(self._method)),
+        ]
+        title = "" if self._scene is None else self._scene.title
+        return html_table(title or "Simulation", rows) + html_picture(self._repr_png_())
+
+    def view(self, *, color: str | None = None, height: int = 480) -> Any:
+        """Show it live in a notebook's cell; needs ``pip install carom[notebook]``.
+
+        The page's buttons and sliders act on this simulation. While a cell runs the view waits,
+        and afterwards shows what the cell has done.
+
+        Parameters
+        ----------
+        color : str, optional
+            "energy", "speed", "collisions", "species" or "own"; as the scene asks for if left out.
+        height : int
+            Of the view, in pixels.
 
         Returns
         -------
-        Picture
-            Notebooks show it; `save` writes it into a file.
+        anywidget.AnyWidget
+            Any number of them can show one simulation.
 
         Raises
         ------
         InputError
-            If a value cannot be used, Pillow is missing for the words, or there are no spheres.
-
-        Examples
-        --------
-        >>> import carom
-        >>> sim = carom.Simulation(carom.scenes.gas(n=50))
-        >>> sim.picture(size=(640, 360))
-        <Picture: 640 x 360 pixels>
+            If a value cannot be used, or anywidget is not installed.
         """
-        style = Style.of(
-            self._scene,
-            size=size,
-            camera=camera,
-            color=color,
-            theme=theme,
-            shadows=shadows,
-            quality=quality,
-        )
-        title = "" if self._scene is None else self._scene.title
-        return paint(self.state, self.world, style, title, caption)
+        from carom.view import notebook
 
-    def _repr_png_(self) -> bytes | None:
-        return None if len(self) == 0 else small_png(self.state, self.world, self._scene)
+        return notebook.live(self, color=color, height=height)
 
     def __repr__(self) -> str:
         method = self.method if isinstance(self.method, str) else "its own"

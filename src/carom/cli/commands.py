@@ -19,6 +19,7 @@ from carom.cli.comparing import side_by_side
 from carom.cli.observing import as_data as observed_data
 from carom.cli.observing import observables, sheets, tables
 from carom.cli.rendering import render_file
+from carom.cli.replaying import show_recording
 from carom.cli.running import as_data, execute, goal, summary
 from carom.cli.sketching import sketch
 from carom.cli.source import parsed, source, whole
@@ -44,6 +45,12 @@ app = typer.Typer(
 
 SceneName = Annotated[
     str, typer.Argument(metavar="SCENE|FILE.toml", help="A scene's name, or a scene file.")
+]
+ShownName = Annotated[
+    str,
+    typer.Argument(
+        metavar="SCENE|FILE.toml|RUN.gsd", help="A scene's name, a scene file or a recording."
+    ),
 ]
 Seed = Annotated[str | None, typer.Option(metavar="N", help="Of the scene's random numbers.")]
 Method = Annotated[
@@ -138,7 +145,7 @@ def _print_options(name: str, quiet: bool) -> None:
 @app.command(context_settings=LOOSE)
 def show(
     context: typer.Context,
-    scene: SceneName = DEFAULT_SCENE,
+    scene: ShownName = DEFAULT_SCENE,
     port: Annotated[str, typer.Option(metavar="N", help="0 takes a free one.")] = "0",
     host: Annotated[
         str,
@@ -156,13 +163,16 @@ def show(
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Show a scene live in the browser; Ctrl-C ends it."""
+    """Show a scene live in the browser, or a recording as a replay; Ctrl-C ends it."""
     words = context.args
     if scene.startswith("-"):  # `carom show --seed 3` needs no scene, `--n 5` has one
         words, scene = [scene, *words], DEFAULT_SCENE
-    found = source(scene, words, whole("seed", seed))
     number = whole("port", port)
     assert number is not None
+    if scene.endswith(".gsd"):
+        show_recording(scene, words, host, number, no_browser=no_browser, json=json, quiet=quiet)
+        return
+    found = source(scene, words, whole("seed", seed))
     sim = found.simulation(method, parsed("tick", tick))
 
     def ready(view: LiveView) -> None:

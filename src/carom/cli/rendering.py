@@ -24,7 +24,10 @@ def render_file(
         str, typer.Argument(metavar="SCENE|FILE.toml|FILE.gsd", help="What to show.")
     ] = "",
     output: Annotated[
-        str, typer.Option("--output", "-o", metavar="FILE", help="Ends in .mp4, .gif or .png.")
+        str,
+        typer.Option(
+            "--output", "-o", metavar="FILE", help="Ends in .mp4, .gif, .png or .html (a replay)."
+        ),
     ] = "",
     begin: Annotated[
         str | None, typer.Option("--from", metavar="TIME", help="Simulated time to begin at.")
@@ -70,7 +73,7 @@ def render_file(
         bool, typer.Option("--quiet", metavar="", help="No progress bar, no word.")
     ] = False,
 ) -> None:
-    """Write a picture or a film of a scene or a recording.
+    """Write a picture, a film or a replay of a scene or a recording.
 
     The scene's own options go here too, as in: carom render gas -o gas.mp4 --n 300
     """

@@ -153,9 +153,7 @@ def _cover(radius: Floats, room: Room) -> float:
     return float(np.pi * (radius**2).sum() / max(a * b, b * c, c * a, 1e-30))
 
 
-def _look(
-    state: State, room: Room, eye: Eye, style: Style, cover: float
-) -> dict[str, object]:
+def _look(state: State, room: Room, eye: Eye, style: Style, cover: float) -> dict[str, object]:
     palette = style.palette
     typical = float(np.sort(state.radius)[len(state) // 2]) if len(state) else 1.0
     towards = lamp(eye, room)

@@ -109,6 +109,31 @@ class Recording:
     def __repr__(self) -> str:
         return f"<Recording: {self.path}, {len(self)} frames, time {self.start:g} to {self.end:g}>"
 
+    def view(self, *, color: str | None = None, height: int = 480) -> Any:
+        """Play it in a notebook's cell; needs ``pip install carom[notebook]``.
+
+        The widget holds a replay, so it plays without a kernel too.
+
+        Parameters
+        ----------
+        color : str, optional
+            "energy", "speed", "collisions", "species" or "own"; as the scene asks for if left out.
+        height : int
+            Of the view, in pixels.
+
+        Returns
+        -------
+        anywidget.AnyWidget
+
+        Raises
+        ------
+        InputError
+            If a value cannot be used, or anywidget is not installed.
+        """
+        from carom.view import notebook
+
+        return notebook.recorded(self, color=color, height=height)
+
     def close(self) -> None:
         """Let go of the file."""
         self.file.close()
