@@ -146,7 +146,6 @@ class _Job:
     progress: Callable[[Progress], object] | None
 
     def __post_init__(self) -> None:
-        _only((Camera, type(None)), "camera", self.style.camera)
         number("speed", self.speed, above=0)
         for name in ("begin", "until", "fps"):
             value = getattr(self, name)
@@ -205,12 +204,6 @@ class _Job:
             raise InputError(msg)
         times: Floats = self.start + step * np.arange(max(1, round(many)))
         return times
-
-
-def _only(kinds: tuple[type, ...], name: str, value: Any) -> None:
-    if not isinstance(value, kinds):
-        msg = f"{name} must be of type {kinds[0].__name__}, not {value!r:.60}"
-        raise InputError(msg)
 
 
 def _listed(names: Iterable[str]) -> str:

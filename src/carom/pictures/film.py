@@ -14,6 +14,7 @@ from carom.pictures.painter import Pixels
 
 BLUR = {"draft": 28, "good": 18}  #: constant rate factor of H.264, by quality
 RATES = {"draft": 2_000_000, "good": 12_000_000}  #: bit/s where there is no H.264
+FASTEST = 240  #: pictures per second of an MP4
 FASTEST_GIF = 50  #: pictures per second: browsers slow down faster ones
 BT709 = 1  #: the colours of high-definition video (ITU-T H.273, table 2, 3 and 4)
 
@@ -45,10 +46,11 @@ def check(suffix: str, size: tuple[int, int], fps: float) -> None:
     pyav()
     if suffix == ".gif":
         pillow()
-        if fps > FASTEST_GIF:
-            msg = f"fps is {fps:g}; a GIF shows {FASTEST_GIF} pictures per second at most"
-            raise InputError(msg)
-    elif size[0] % 2 or size[1] % 2:
+    kind, most = ("GIF", FASTEST_GIF) if suffix == ".gif" else ("film", FASTEST)
+    if fps > most:
+        msg = f"fps is {fps:g}; a {kind} shows {most} pictures per second at most"
+        raise InputError(msg)
+    if suffix != ".gif" and (size[0] % 2 or size[1] % 2):
         even = f"{size[0] + size[0] % 2}x{size[1] + size[1] % 2}"
         msg = f"an MP4 film cannot have the odd size {size[0]}x{size[1]}; take {even}"
         raise InputError(msg)
@@ -88,7 +90,8 @@ class Film:
         self._fps = fps
         self._gif = path.suffix.lower() == ".gif"
         self.frames = 0
-        options = {} if self._gif else {"movflags": "+faststart"}
+        last = str(round(100 / fps))  # hundredths of a second that the last picture stays
+        options = {"final_delay": last} if self._gif else {"movflags": "+faststart"}
         kind = "gif" if self._gif else "mp4"
         try:
             self._file = pyav().open(str(self._part), "w", format=kind, options=options)
@@ -101,8 +104,8 @@ class Film:
             self._palette = image.quantize(256, dither=0)
             colors = np.zeros((256, 4), np.uint8)
             given = np.array(self._palette.getpalette(), np.uint8).reshape(-1, 3)
-            colors[: len(given), :3] = given[:, ::-1]
-            colors[:, 3] = 255
+            colors[:, 0] = 255  # opaque; then red, green, blue
+            colors[: len(given), 1:] = given
             self._colors = colors
 
     def _gif_stream(self, size: tuple[int, int]) -> Any:

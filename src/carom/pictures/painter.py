@@ -55,6 +55,12 @@ class Style:
     paper: bool = False
 
     def __post_init__(self) -> None:
+        if not isinstance(self.size, tuple | list) or len(self.size) != 2:
+            msg = f"size must be (width, height) in pixels, not {self.size!r:.60}"
+            raise InputError(msg)
+        if self.camera is not None and not hasattr(self.camera, "target"):
+            msg = f"camera must be a Camera, not {self.camera!r:.60}"
+            raise InputError(msg)
         for name, side in zip(("width", "height"), self.size, strict=True):
             if number(f"the picture's {name}", side, at_least=SMALLEST, at_most=LARGEST) % 1:
                 msg = f"the picture's {name} is {side:g}; give whole pixels"
@@ -177,8 +183,8 @@ def _look(state: State, room: Room, eye: Eye, style: Style, cover: float) -> dic
         "deepest": DEEPEST * float(np.ptp(light) + 2 * (room.margin + state.radius.max(initial=0))),
         "shadowed": 1 / (1 + 0.5 * cover),
         "crowd_cell": CELL * typical if cover > CROWDED else 0.0,
-        "wire": style.wire,
-        "shadows": style.shadows and cover <= DENSE,
+        "wire": bool(style.wire),
+        "shadows": bool(style.shadows) and cover <= DENSE,
     }
 
 
