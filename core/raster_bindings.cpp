@@ -87,10 +87,10 @@ auto make_raster(int width, int height, int samples, double pixel, const Eye& ey
     return std::make_unique<raster::Raster>(view, look, std::move(room));
 }
 
-auto draw(raster::Raster& self, const Vectors& position, const Numbers& radius,
-          const Colors& color) {
+auto draw(raster::Raster& self, const Vectors& position, const Numbers& radius, const Colors& color,
+          size_t own) {
     const size_t n = position.shape(0);
-    if (radius.shape(0) != n || color.shape(0) != n)
+    if (radius.shape(0) != n || color.shape(0) != n || own > n)
         throw nb::value_error("arrays of different lengths");
     const size_t width = self.view().width, height = self.view().height;
     uint8_t* const bytes = new uint8_t[3 * width * height];
@@ -101,7 +101,7 @@ auto draw(raster::Raster& self, const Vectors& position, const Numbers& radius,
         const std::vector<double> radii(radius.data(), radius.data() + n);
         const std::vector<uint32_t> colors(color.data(), color.data() + n);
         const nb::gil_scoped_release release;
-        self.draw(places, radii, colors, bytes);
+        self.draw(places, radii, colors, own, bytes);
     }
     return nb::ndarray<nb::numpy, uint8_t>(bytes, {height, width, 3}, owner);
 }
@@ -115,8 +115,12 @@ void bind_raster(nb::module_& m) {
              nb::arg("shells"),
              "eye: place, right, up, forward. faces and edges: rows as in core/raster/picture.hpp.")
         .def("draw", &draw, nb::arg("position"), nb::arg("radius"), nb::arg("color"),
+             nb::arg("own"),
              nb::sig("def draw(self, position: NDArray[numpy.float64], "
-                     "radius: NDArray[numpy.float64], color: NDArray[numpy.uint32]) -> "
+                     "radius: NDArray[numpy.float64], color: NDArray[numpy.uint32], "
+                     "own: int) -> "
                      "NDArray[numpy.uint8]"),
-             "A picture: (height, width, 3), red, green and blue.");
+             "A picture: (height, width, 3), red, green and blue. All but the first `own` spheres "
+             "are "
+             "images of these.");
 }

@@ -31,8 +31,8 @@ Crowd::Crowd(const Vec3& low, const Vec3& high, double cell, const Vec3& up) {
     hidden_.resize(all), light_.resize(all), passed_.resize(all);
 }
 
-void Crowd::fill(const std::vector<Vec3>& position, const std::vector<double>& radius) {
-    spread(position, radius);
+void Crowd::fill(const std::vector<Vec3>& position, const std::vector<double>& radius, size_t n) {
+    spread(position, radius, n);
     std::fill(light_.begin(), light_.end(), 0.0f);
     for (int k = 0; k < 3; ++k) {
         const float step = kLeak * float(size_[k]) / float(cells_[k]);
@@ -46,11 +46,11 @@ void Crowd::fill(const std::vector<Vec3>& position, const std::vector<double>& r
     for (float& light : light_) light = std::min(1.0f, 1.15f * std::pow(light / most, kGentle));
 }
 
-void Crowd::spread(const std::vector<Vec3>& position, const std::vector<double>& radius) {
+void Crowd::spread(const std::vector<Vec3>& position, const std::vector<double>& radius, size_t n) {
     std::fill(hidden_.begin(), hidden_.end(), 0.0f);
     double per[3];
     for (int k = 0; k < 3; ++k) per[k] = cells_[k] / size_[k];
-    for (size_t i = 0; i < radius.size(); ++i) {
+    for (size_t i = 0; i < n; ++i) {
         const double x[3] = {position[i].x, position[i].y, position[i].z};
         const double area = kPi * radius[i] * radius[i] * per[0] * per[1] * per[2];
         int cell[3];

@@ -14,13 +14,14 @@ public:
     // low, high: corners of the room; cell: wanted length of a cell's side; up: where the sky is.
     Crowd(const Vec3& low, const Vec3& high, double cell, const Vec3& up);
 
-    void fill(const std::vector<Vec3>& position, const std::vector<double>& radius);
+    // With the first n spheres.
+    void fill(const std::vector<Vec3>& position, const std::vector<double>& radius, size_t n);
 
     // 0 to 1, between the cells in proportion.
     float left(const Vec3& place) const;
 
 private:
-    void spread(const std::vector<Vec3>& position, const std::vector<double>& radius);
+    void spread(const std::vector<Vec3>& position, const std::vector<double>& radius, size_t n);
     void sweep(int axis, bool forward, float share);
 
     double low_[3], size_[3];

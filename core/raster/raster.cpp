@@ -35,7 +35,7 @@ Raster::Raster(const View& view, const Look& look, Room room)
 }
 
 void Raster::place(const std::vector<Vec3>& position, const std::vector<double>& radius,
-                   const std::vector<uint32_t>& color) {
+                   const std::vector<uint32_t>& color, size_t own) {
     const int n = int(position.size());
     order_.resize(n);
     for (int i = 0; i < n; ++i)
@@ -43,7 +43,7 @@ void Raster::place(const std::vector<Vec3>& position, const std::vector<double>&
     if (!look_.wire) std::sort(order_.begin(), order_.end());  // wires keep their own order
     const bool crowded = look_.crowd_cell > 0 && n > 0;
     Crowd crowd(look_.low, look_.high, crowded ? look_.crowd_cell : 1, look_.up);
-    if (crowded) crowd.fill(position, radius);
+    if (crowded) crowd.fill(position, radius, own);
     balls_.resize(n);
     for (int k = 0; k < n; ++k) {
         const int i = order_[k].second;
@@ -65,9 +65,9 @@ void Raster::place(const std::vector<Vec3>& position, const std::vector<double>&
 }
 
 void Raster::draw(const std::vector<Vec3>& position, const std::vector<double>& radius,
-                  const std::vector<uint32_t>& color, uint8_t* bytes) {
+                  const std::vector<uint32_t>& color, size_t own, uint8_t* bytes) {
     const std::lock_guard lock(busy_);
-    place(position, radius, color);
+    place(position, radius, color, own);
     frame_ = still_;
     seen_.clear();
     if (!look_.wire && !balls_.empty()) {

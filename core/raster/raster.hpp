@@ -17,16 +17,16 @@ class Raster {
 public:
     Raster(const View& view, const Look& look, Room room);
 
-    // position: in the world; color: 0xRRGGBB; bytes: height × width × 3. One thread at a time,
-    // others wait.
+    // position: in the world; color: 0xRRGGBB; bytes: height × width × 3. The first `own` spheres
+    // fill the room, all others are images of them. One thread at a time, others wait.
     void draw(const std::vector<Vec3>& position, const std::vector<double>& radius,
-              const std::vector<uint32_t>& color, uint8_t* bytes);
+              const std::vector<uint32_t>& color, size_t own, uint8_t* bytes);
 
     const View& view() const { return view_; }
 
 private:
     void place(const std::vector<Vec3>& position, const std::vector<double>& radius,
-               const std::vector<uint32_t>& color);
+               const std::vector<uint32_t>& color, size_t own);
 
     View view_;
     Look look_;

@@ -47,7 +47,7 @@ Face floor_at(double z) {
 
 std::vector<uint8_t> drawn(Raster& raster, const Spheres& s) {
     std::vector<uint8_t> bytes(size_t(3) * kWidth * kHeight);
-    raster.draw(s.position, s.radius, s.color, bytes.data());
+    raster.draw(s.position, s.radius, s.color, s.color.size(), bytes.data());
     return bytes;
 }
 std::vector<uint8_t> drawn(const Spheres& s, const Room& room = {}, int samples = 1,

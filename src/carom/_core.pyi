@@ -178,5 +178,8 @@ class Raster:
         position: NDArray[numpy.float64],
         radius: NDArray[numpy.float64],
         color: NDArray[numpy.uint32],
+        own: int,
     ) -> NDArray[numpy.uint8]:
-        """A picture: (height, width, 3), red, green and blue."""
+        """
+        A picture: (height, width, 3), red, green and blue. All but the first `own` spheres are images of these.
+        """

@@ -150,7 +150,9 @@ class Painter:
             radius = np.concatenate([radius, radius[over]])
             colors = np.concatenate([colors, colors[over]])
         contiguous = np.ascontiguousarray
-        return self._raster.draw(contiguous(place), contiguous(radius), contiguous(colors))
+        return self._raster.draw(
+            contiguous(place), contiguous(radius), contiguous(colors), len(state)
+        )
 
 
 def _cover(radius: Floats, room: Room) -> float:
