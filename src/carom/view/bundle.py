@@ -96,7 +96,9 @@ def _wrapped(name: str, text: str) -> str:
         lambda found: f"const {{{found[1].replace(' as ', ': ')}}} = ${found[2]};\n", text
     )
     if rest := _REST.search(text):
-        msg = f"{name}.js has an import or export of a form that the bundle does not know: {rest[0]}"
+        msg = (
+            f"{name}.js has an import or export of a form that the bundle does not know: {rest[0]}"
+        )
         raise ValueError(msg)
     given = f"return {{ {', '.join(exports)} }};\n" if exports else ""
     return f"const ${name} = (() => {{\n{_INDENT.sub('', text)}{given}}})();"
