@@ -110,9 +110,7 @@ def test_extended_xyz(path, tmp_path):
         assert f'Lattice="{side} 0 0 0 {side} 0 0 0 {side}"' in head
         assert f"Time={frame.time}" in head
         assert 'pbc="T T T"' in head
-        assert re.search(
-            r"Properties=species:S:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1:id:I:1", head
-        )
+        assert re.search(r"Properties=type:I:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1:id:I:1", head)
         table = np.array([row.split() for row in rows], float)
         assert (table[:, 1:4] == frame.position).all()
         assert (table[:, 4:7] == frame.velocity).all()

@@ -55,7 +55,7 @@ def _counted(run: Recording, progress: Progress) -> Iterator[Frame]:
 
 # Extended XYZ.
 
-COLUMNS = "species:S:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1:id:I:1"
+COLUMNS = "type:I:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1:id:I:1"
 
 
 def _xyz(run: Recording, path: Path, progress: Progress) -> None:
