@@ -4,19 +4,19 @@ import copy
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from types import TracebackType
 from typing import Self
 
 import numpy as np
 
 from carom.checks import number
 from carom.errors import InputError
+from carom.keeping import Keeping
 from carom.kept import Surroundings
 from carom.listing import Listing
 from carom.methods import TICKS_PER_SECOND, Method, engine_maker
 from carom.motion import Motion, Saved
 from carom.rules import Smooth
-from carom.running import Running, count
+from carom.running import count
 from carom.scene import Scene, Spheres
 from carom.state import State
 from carom.walls import Open, Wall
@@ -42,7 +42,7 @@ class Bookmark:
     saved: Saved = field(repr=False)
 
 
-class Simulation(Running):
+class Simulation(Keeping):
     """Spheres that move and collide.
 
     Parameters
@@ -312,17 +312,6 @@ class Simulation(Running):
                 sys.stderr.write(f"to watch only: {view.watch_url}\n")
 
         serve(self, host=host, port=port, open_browser=open_browser, on_ready=announce)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        return None
 
     def __repr__(self) -> str:
         method = self.method if isinstance(self.method, str) else "its own"

@@ -1,0 +1,1 @@
+"""Recordings: what happened, in a file."""
