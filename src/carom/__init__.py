@@ -21,6 +21,8 @@ from carom.errors import (
     RunError,
     UnknownNameError,
 )
+from carom.event_file import Events, load_events
+from carom.measuring import measure
 from carom.observe.observable import log_times
 from carom.rules import Smooth
 from carom.scene import Camera, Scene, Spheres
@@ -38,6 +40,7 @@ __all__ = [
     "CaromError",
     "CollapseError",
     "Cylinder",
+    "Events",
     "FileError",
     "InputError",
     "Open",
@@ -54,7 +57,9 @@ __all__ = [
     "UnknownNameError",
     "Vector",
     "__version__",
+    "load_events",
     "log_times",
+    "measure",
     "observe",
     "scenes",
 ]

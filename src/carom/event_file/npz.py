@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from carom.errors import InputError
 from carom.event_file.layout import rows
-from carom.event_file.source import Source, Span, is_start, refused
+from carom.event_file.source import Source, Span, refused
 
 #: Of the arrays that hold the events, in their order.
 PART = "events_{:05}"
@@ -54,12 +54,16 @@ class NpzSource(Source):
                     raise refused(path, "this .npz was not written by record_events()")
                 self.about = json.loads(str(file["about"]))
                 self.spans = [Span(int(n), *times) for n, *times in file["spans"].tolist()]
-                self.arrays = {name: file[name] for name in file.files if is_start(name)}
         except (zipfile.BadZipFile, ValueError, EOFError) as error:
             if isinstance(error, InputError):
                 raise
             reason = "it is no .npz, cut short, or not closed because its program was killed"
             raise refused(path, reason) from error
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Where the run began."""
+        with np.load(self._path, allow_pickle=False) as file:
+            return {name: file[name] for name in file.files if not name.startswith("events_")}
 
     def read(self, part: int, names: Sequence[str]) -> dict[str, NDArray[Any]]:
         """Read columns of one array."""

@@ -67,7 +67,7 @@ class ParquetSink:
     def close(self, about: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> None:
         """Write what is known at the end, and the footer."""
         packed = io.BytesIO()
-        np.savez_compressed(packed, **dict(arrays))
+        np.savez_compressed(packed, **dict[str, Any](arrays))
         text = base64.b64encode(packed.getvalue()).decode()
         pieces = {f"{START}{k}": text[k : k + PIECE] for k in range(0, len(text), PIECE)}
         self._writer.add_key_value_metadata({ABOUT: json.dumps(about), **pieces})
@@ -103,8 +103,7 @@ class ParquetSource(Source):
         times = group.column(COLUMNS.index("time")).statistics
         return Span(group.num_rows, times.min, times.max)
 
-    @property
-    def arrays(self) -> Mapping[str, NDArray[Any]]:
+    def arrays(self) -> dict[str, NDArray[Any]]:
         """Where the run began."""
         text = b"".join(self._pieces[k] for k in sorted(self._pieces))
         with np.load(io.BytesIO(base64.b64decode(text)), allow_pickle=False) as file:

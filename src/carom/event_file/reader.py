@@ -1,7 +1,7 @@
 """`load_events`: events of a file, read as they are asked for."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -43,7 +43,7 @@ class Events:
         self._source = source
 
     def __len__(self) -> int:
-        return sum(span.count for span in self._source.spans)
+        return sum(span.size for span in self._source.spans)
 
     def __repr__(self) -> str:
         return f"<Events: {len(self)} of {self.path.name}, up to time {self.end:.6g}>"
@@ -142,11 +142,14 @@ class Events:
 
     @cached_property
     def _begun(self) -> tuple[State, World]:
-        arrays = self._source.arrays
-        if not arrays:
+        return layout.unpacked(self._arrays)
+
+    @cached_property
+    def _arrays(self) -> dict[str, NDArray[Any]]:
+        if "end" not in self.about:
             msg = f"{self.path} was closed before anything ran: it has no start and no events"
             raise InputError(msg)
-        return layout.unpacked(arrays)
+        return self._source.arrays()
 
     @property
     def start(self) -> State:
@@ -161,8 +164,7 @@ class Events:
     @property
     def checkpoint(self) -> bytes | None:
         """What the engine kept of that moment, if it was under way."""
-        arrays: Mapping[str, NDArray[Any]] = self._source.arrays
-        return arrays["engine"].tobytes() if "engine" in arrays else None
+        return self._arrays["engine"].tobytes() if "engine" in self._arrays else None
 
 
 def _within(records: NDArray[Any], start: float, until: float) -> NDArray[np.bool_]:
@@ -186,15 +188,6 @@ def load_events(path: str | Path) -> Events:
     InputError
         If it is no event file, is cut short, or was written by a newer carom than this one can
         read; or pyarrow is not installed and it is Parquet.
-
-    Examples
-    --------
-    >>> import carom
-    >>> sim = carom.Simulation(carom.scenes.two_balls())
-    >>> with sim.record_events("events.npz"):
-    ...     sim.run(until=10)
-    >>> events = carom.load_events("events.npz")
-    >>> len(events), events.i.tolist(), events.j.tolist(), events.start.time
     """
     file = Path(path)
     make = SOURCES[ending(file)]

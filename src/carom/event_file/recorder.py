@@ -19,6 +19,7 @@ from carom.event_file.parquet import ParquetSink
 from carom.event_file.source import ENDINGS, ending
 from carom.motion import Motion
 from carom.observe.batch import Moment
+from carom.walls import wall_names
 
 
 class Sink(Protocol):
@@ -35,7 +36,7 @@ SINKS: dict[str, type[Sink]] = dict(zip(ENDINGS, (ParquetSink, NpzSink), strict=
 
 
 class OpenFile:
-    """A file being written. It knows nothing of the motion, so it can be closed after it is gone."""
+    """A file being written. It knows nothing of the motion and can be closed after that is gone."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -150,6 +151,8 @@ class EventRecorder:
         if saved.engine and any(getattr(built, name) != getattr(state, name) for name in told):
             # It was under way: spheres stand at their last events, which the state has rounded.
             self._file.arrays["engine"] = np.frombuffer(saved.engine, np.uint8)
+        self._file.about["n"] = len(state)
+        self._file.about["walls"] = list(wall_names(self._motion.surroundings.walls))
         self._file.about["before"] = {
             "collisions": built.collisions,
             "wall_collisions": built.wall_collisions,

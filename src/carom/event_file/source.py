@@ -13,7 +13,7 @@ from carom.errors import InputError
 class Span(NamedTuple):
     """How many events a part of a file has, and their first and last time."""
 
-    count: int
+    size: int
     first: float
     last: float
 
@@ -26,29 +26,23 @@ class Source(ABC):
     about : dict
     spans : list of Span
         Its parts in their order.
-    arrays : dict of str to array
-        Where the run began, see `layout.packed`; the engine's own state under ``engine``.
     """
 
     about: Mapping[str, Any]
     spans: list[Span]
-    arrays: Mapping[str, NDArray[Any]]
 
     @abstractmethod
     def read(self, part: int, names: Sequence[str]) -> dict[str, NDArray[Any]]:
         """Read columns of one part."""
 
-
-def is_start(name: str) -> bool:
-    """Whether an array of a file is one of those in `Source.arrays`."""
-    return name.startswith(("start_", "world_")) or name == "engine"
+    @abstractmethod
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Where the run began, see `layout.packed`; the engine's own state under ``engine``."""
 
 
 def refused(path: Path, reason: str) -> InputError:
     """Refuse a file."""
     return InputError(f"{path} is no event file that can be read: {reason}")
-
-
 
 
 #: How the names of event files end.
