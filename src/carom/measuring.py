@@ -1,5 +1,6 @@
 """`measure`: observables on a run that is over, from what was kept of it."""
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -156,21 +157,28 @@ class Replay:
         progress: Callable[[float], object] | None = None,
     ) -> None:
         """Go on to a time."""
+        to_the_end = until == self.last["time"]
         stop = Stop.SLICE
         with HeldInterrupt() as interrupt:
-            while stop is not Stop.COLLAPSE and (self.time < until or stop is Stop.SLICE):
-                due = until if feed is None else min(until, feed.due)
-                # Of events at the very end some may have come too late for the recording.
-                stop = Stop(self._engine.advance(due, NO_LIMIT, self._left() or NO_LIMIT))
+            while stop is Stop.SLICE:
+                left = self._left()
+                # The last events are counted: at one moment some may have come, others not.
+                goal = math.inf if to_the_end and left else until
+                due = goal if feed is None else min(goal, feed.due)
+                stop = Stop(self._engine.advance(due, NO_LIMIT, left or NO_LIMIT))
                 self._snapshot = None
                 records = self._engine.take_events()
                 self._compare(records)
                 if feed is not None:
                     feed.events(records)
                     feed.moment(self)
+                if stop in (Stop.TIME, Stop.COUNT) and self.time < until:
+                    stop = Stop.SLICE
                 if progress is not None:
                     progress(self.time)
                 interrupt.deliver()
+        if to_the_end and (self._left() or self.time != until):
+            raise self._differs()
 
     def _left(self) -> int:
         """How many collisions are still to come."""
@@ -188,9 +196,11 @@ class Replay:
         self._waiting = self._waiting[len(records) :]
         self._compared += len(records)
         if recorded.tobytes() != records.tobytes():
-            about = self._events.about
-            msg = (
-                f"{self._events.path} does not follow from its start: near event {self._compared} "
-                f"the run differs from what carom {about['carom']} recorded; measure it there"
-            )
-            raise InputError(msg)
+            raise self._differs()
+
+    def _differs(self) -> InputError:
+        carom = self._events.about["carom"]
+        return InputError(
+            f"{self._events.path} does not follow from its start: near event {self._compared} the "
+            f"run differs from what carom {carom} recorded; measure it with that version"
+        )
