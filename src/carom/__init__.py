@@ -24,6 +24,7 @@ from carom.errors import (
 from carom.event_file import Events, load_events
 from carom.measuring import measure
 from carom.observe.observable import log_times
+from carom.record import Recording, load
 from carom.rules import Smooth
 from carom.scene import Camera, Scene, Spheres
 from carom.simulation import Bookmark, Simulation
@@ -47,6 +48,7 @@ __all__ = [
     "OverlapError",
     "Periodic",
     "Plane",
+    "Recording",
     "RunError",
     "Scene",
     "Simulation",
@@ -57,6 +59,7 @@ __all__ = [
     "UnknownNameError",
     "Vector",
     "__version__",
+    "load",
     "load_events",
     "log_times",
     "measure",

@@ -7,6 +7,9 @@ from typing import Self
 from carom.errors import InputError
 from carom.event_file.recorder import EventRecorder
 from carom.methods import Method
+from carom.record import load
+from carom.record.again import resume
+from carom.record.recorder import record
 from carom.running import Running
 from carom.scene import Scene
 
@@ -54,6 +57,73 @@ class Keeping(Running):
             "tick": self._tick,
         }
         return EventRecorder(self._motion, file, about)
+
+    def record(
+        self,
+        path: str | Path,
+        *,
+        every: float | None = None,
+        checkpoint_every: float | None = None,
+        overwrite: bool = False,
+    ) -> None:
+        """Write everything that happens from now on into a file, until `close`.
+
+        `carom.load` reads it, `resume` goes on from it with the same bits, and OVITO, freud and
+        MDAnalysis open it. Killed at any instant, it holds all frames completed by then. What
+        it costs: docs/record.md.
+
+        Parameters
+        ----------
+        path : str or Path
+            By custom it ends in ``.gsd``.
+        every : float, optional
+            Simulated time between frames; if left out, thirty pass in a second at `pace`.
+        checkpoint_every : float, optional
+            Simulated time between checkpoints, a multiple of `every`; ten times as long if left
+            out.
+        overwrite : bool
+            Replace a file that is there.
+
+        Raises
+        ------
+        InputError
+            If a time cannot be used, the file is there already, or the method is not "exact".
+        FileError
+            If the file cannot be written. A disk that is full later on ends a run with it.
+        """
+        if self._method != "exact":
+            msg = (
+                f"method {self._method!r:.60} cannot be recorded, only 'exact': a recording "
+                "promises to go on with the same bits"
+            )
+            raise InputError(msg)
+        options = {"every": every, "checkpoint_every": checkpoint_every}
+        recorder = record(self._motion, path, scene=self._scene, overwrite=overwrite, **options)
+        self._motion.followers.append(recorder)
+
+    @classmethod
+    def resume(cls, path: str | Path) -> Self:
+        """Go on with a recording from its last frame, with the same bits, in the same file.
+
+        That a run was interrupted, killed too, leaves no trace: it comes to the same end.
+
+        Parameters
+        ----------
+        path : str or Path
+
+        Raises
+        ------
+        InputError
+            If it is no recording, or another version of carom comes to other bits.
+        FileError
+            If it cannot be read and written, is damaged, or another program writes it now.
+        """
+        sim = cls()
+        with load(path) as run:
+            recorder = resume(sim._motion, run)
+            sim._scene = run.scene
+        sim._motion.followers.append(recorder)
+        return sim
 
     def close(self) -> None:
         """Finish all files that are being written; the simulation may go on without them.

@@ -4,6 +4,7 @@ import copy
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Self
 
 import numpy as np
@@ -65,6 +66,8 @@ class Simulation(Keeping):
         Length of one step of ``method="tick"``.
     keep_events : int
         How many of the newest events of a run `events` holds, 40 bytes each.
+    record : str or Path, optional
+        A file for everything that happens, see `record`; use the simulation with ``with`` then.
 
     Raises
     ------
@@ -93,6 +96,7 @@ class Simulation(Keeping):
         method: Method = "exact",
         tick: float = 1.0,
         keep_events: int = 1_000_000,
+        record: str | Path | None = None,
     ) -> None:
         changes = {"walls": walls, "rule": rule, "gravity": gravity, "collide": collide}
         changes = {name: value for name, value in changes.items() if value is not None}
@@ -106,6 +110,8 @@ class Simulation(Keeping):
         state = State.empty() if scene is None else described.build()[0]
         limit = count("keep_events", keep_events)
         self._motion = self._moved(state, Surroundings.of(described), limit)
+        if record is not None:
+            self.record(record)
 
     def _moved(self, state: State, around: Surroundings, keep_events: int) -> Motion:
         """What carries spheres on by this simulation's method."""
