@@ -21,17 +21,19 @@ class Keeping(Running):
     _method: Method
     _tick: float
 
-    def record_events(self, path: str | Path) -> EventRecorder:
+    def record_events(self, path: str | Path, *, overwrite: bool = False) -> EventRecorder:
         """Write every event of every run from now on into a file (docs/events.md).
 
         Recording changes no bit of the motion and holds 2^18 events in memory. The file is
         complete once it is closed: by `EventRecorder.stop`, by `close`, at the end of a ``with``
-        block of either, or when the program ends. One that exists is written over.
+        block of either, or when the program ends.
 
         Parameters
         ----------
         path : str or Path
             ``.parquet`` (needs ``pip install carom[analysis]``) or ``.npz``.
+        overwrite : bool
+            Replace a file that is there.
 
         Returns
         -------
@@ -40,7 +42,7 @@ class Keeping(Running):
         Raises
         ------
         InputError
-            If the name ends otherwise, or pyarrow is missing, or this simulation writes it already.
+            If the name ends otherwise, the file is there already, or pyarrow is missing.
         FileError
             If the file cannot be written.
         """
@@ -49,6 +51,9 @@ class Keeping(Running):
             if isinstance(other, EventRecorder) and other.path.resolve() == file.resolve():
                 msg = f"{file} is being written already; stop that recording first"
                 raise InputError(msg)
+        if file.exists() and not overwrite:
+            msg = f"{file} is there already; give another name, or overwrite=True to replace it"
+            raise InputError(msg)
         scene, origin = self._scene, None if self._scene is None else self._scene.origin
         about = {
             "scene": origin and {"name": origin.name, "options": origin.options},
