@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.errors import InputError
 from carom.event_file.layout import rows
 from carom.event_file.source import Source, Span, refused
 
@@ -48,17 +47,17 @@ class NpzSource(Source):
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        try:
-            with np.load(path, allow_pickle=False) as file:
-                if not {"about", "spans"} <= set(file.files):
-                    raise refused(path, "this .npz was not written by record_events()")
-                self.about = json.loads(str(file["about"]))
-                self.spans = [Span(int(n), *times) for n, *times in file["spans"].tolist()]
-        except (zipfile.BadZipFile, ValueError, EOFError) as error:
-            if isinstance(error, InputError):
-                raise
-            reason = "it is no .npz, cut short, or not closed because its program was killed"
-            raise refused(path, reason) from error
+        with path.open("rb") as stream:  # np.load itself would leave a bad file open
+            try:
+                file = np.load(stream, allow_pickle=False)
+                names = set(file.files)
+            except (zipfile.BadZipFile, ValueError, EOFError, AttributeError) as error:
+                reason = "it is no .npz, cut short, or not closed because its program was killed"
+                raise refused(path, reason) from error
+            if not {"about", "spans"} <= names:
+                raise refused(path, "this .npz was not written by record_events()")
+            self.about = json.loads(str(file["about"]))
+            self.spans = [Span(int(n), *times) for n, *times in file["spans"].tolist()]
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Where the run began."""

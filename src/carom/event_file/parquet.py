@@ -43,6 +43,8 @@ class ParquetSink:
 
     def __init__(self, path: Path) -> None:
         self._arrow = arrow = pyarrow(path)
+        # Now: where there is pandas this loads it, and at the end of a program that is too late.
+        self._kinds = arrow.array(KINDS)
         kind = arrow.dictionary(arrow.int8(), arrow.string())
         plain = {"time": arrow.float64(), **dict.fromkeys(IMPULSE, arrow.float64())}
         types = {name: plain.get(name, arrow.int32()) for name in COLUMNS} | {"kind": kind}
@@ -60,7 +62,7 @@ class ParquetSink:
     def write(self, records: NDArray[Any]) -> None:
         """Add events."""
         columns = {name: np.ascontiguousarray(rows(records)[name]) for name in COLUMNS}
-        kind = self._arrow.DictionaryArray.from_arrays(columns["kind"], list(KINDS))
+        kind = self._arrow.DictionaryArray.from_arrays(columns["kind"], self._kinds)
         table = self._arrow.table({**columns, "kind": kind}, schema=self._schema)
         self._writer.write_table(table, row_group_size=len(records))
 
