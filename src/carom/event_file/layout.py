@@ -45,20 +45,33 @@ MEANING = {
 }
 
 
+def columns(records: NDArray[Any]) -> dict[str, NDArray[Any]]:
+    """The columns of a file from (n,) EVENT."""
+    result = {name: np.ascontiguousarray(records[name]) for name in ("time", "i", "j")}
+    for axis, name in enumerate(IMPULSE):
+        result[name] = np.ascontiguousarray(records["impulse"][:, axis])
+    result["kind"], result["wall"] = _kinds(result["j"])
+    return result
+
+
+def _kinds(j: NDArray[np.int32]) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
+    """What happened, and at which wall."""
+    kind, wall = np.full(len(j), PAIR, np.int8), np.full(len(j), -1, np.int32)
+    alone = np.flatnonzero(j < 0)
+    partner = j[alone]
+    which = [partner > CAME_TO_REST, partner > WOKE]
+    kind[alone] = np.select(which, [WALL, REST], WAKE)
+    wall[alone] = np.select(which, [-1 - partner, CAME_TO_REST - partner], -1)
+    return kind, wall
+
+
 def rows(records: NDArray[Any]) -> NDArray[Any]:
     """(n,) ROW from (n,) EVENT."""
     result = np.empty(len(records), ROW)
-    for name in ("time", "i", "j"):
-        result[name] = records[name]
-    for axis, name in enumerate(IMPULSE):
-        result[name] = records["impulse"][:, axis]
-    j = records["j"]
-    result["kind"], result["wall"] = PAIR, -1
-    hit, rest, woke = (j < 0) & (j > CAME_TO_REST), (j <= CAME_TO_REST) & (j > WOKE), j == WOKE
-    for kind, which in ((WALL, hit), (REST, rest), (WAKE, woke)):
-        result["kind"][which] = kind
-    result["wall"][hit] = -1 - j[hit]
-    result["wall"][rest] = CAME_TO_REST - j[rest]
+    # As bytes: field by field takes sixteen times as long.
+    plain = np.ascontiguousarray(records).view(np.uint8).reshape(len(records), EVENT.itemsize)
+    result.view(np.uint8).reshape(len(records), ROW.itemsize)[:, : EVENT.itemsize] = plain
+    result["kind"], result["wall"] = _kinds(records["j"])
     return result
 
 

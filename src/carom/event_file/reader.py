@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from carom.errors import FileError, InputError
 from carom.event_file import layout
-from carom.event_file.layout import COLUMNS, FORMAT, IMPULSE, KINDS, ROW, VERSION
+from carom.event_file.layout import FORMAT, IMPULSE, KINDS, ROW, VERSION
 from carom.event_file.npz import NpzSource
 from carom.event_file.parquet import ParquetSource
 from carom.event_file.source import ENDINGS, Source, ending, refused
@@ -126,8 +126,7 @@ class Events:
         except ImportError as error:
             msg = "to_pandas() needs pandas: pip install carom[analysis]"
             raise InputError(msg) from error
-        rows = layout.rows(self.between(start, until))
-        columns: dict[str, Any] = {name: np.ascontiguousarray(rows[name]) for name in COLUMNS}
+        columns: dict[str, Any] = dict(layout.columns(self.between(start, until)))
         columns["kind"] = pandas.Categorical.from_codes(columns["kind"], list(KINDS))
         frame = pandas.DataFrame(columns)
         frame.attrs.update(self.about)
