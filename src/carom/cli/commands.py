@@ -16,15 +16,18 @@ from carom.cli import report
 from carom.cli.benching import bench
 from carom.cli.comparing import compare as compare_both
 from carom.cli.comparing import side_by_side
+from carom.cli.measuring import measure
 from carom.cli.observing import as_data as observed_data
 from carom.cli.observing import observables, sheets, tables
 from carom.cli.recording import Force, check, convert, info
 from carom.cli.resuming import (
     CheckpointEvery,
+    EventFile,
     Every,
     Output,
     Plan,
     Resume,
+    counted,
     resumed,
     what_was_kept,
 )
@@ -213,6 +216,7 @@ def run(
     every: Every = None,
     checkpoint_every: CheckpointEvery = None,
     force: Force = False,
+    record_events: EventFile = None,
     resume: Resume = None,
     seed: Seed = None,
     json: Json = False,
@@ -222,7 +226,8 @@ def run(
 
     The scene's own options go here too, as in: carom run fluid --n 1e6 --seed 2
     """
-    plan = Plan(output, parsed("every", every), parsed("checkpoint-every", checkpoint_every), force)
+    times = parsed("every", every), parsed("checkpoint-every", checkpoint_every)
+    plan = Plan(output, *times, force, record_events)
     if resume is not None:
         given = scene or context.args or seed or tick or method != "exact" or plan.asked
         found, sim = resumed(resume, refuse=bool(given), ends=(until, collisions, events))
@@ -232,7 +237,7 @@ def run(
         found.scene.pace,
         until=parsed("until", until),
         collisions=whole("collisions", collisions),
-        events=whole("events", events),
+        events=counted(events),
     )
     observed = observables(observe)
     if resume is None:
@@ -289,6 +294,7 @@ def compare(
 
 app.command()(sketch)
 app.command()(bench)
+app.command()(measure)
 app.command()(info)
 app.command()(check)
 app.command()(convert)

@@ -17,7 +17,7 @@ from carom.simulation import Simulation
 COMMAND_OPTIONS = (
     "until", "collisions", "events", "method", "tick", "seed", "json", "quiet",
     "debug", "port", "host", "no-browser", "help", "output", "every", "checkpoint-every", "force",
-    "resume",
+    "record-events", "resume",
 )  # fmt: skip
 
 
