@@ -149,6 +149,31 @@ def test_h5md_holds_one_number_of_spheres(path, tmp_path):
         convert(carom.load(path), tmp_path / "run.h5")
 
 
+@pytest.mark.parametrize("ending", ["npz", "parquet"])
+@pytest.mark.parametrize("begin", [0.0, 0.7])
+def test_event_files_are_those_that_record_events_writes(path, tmp_path, ending, begin):
+    right, converted = tmp_path / f"right.{ending}", tmp_path / f"converted.{ending}"
+    with carom.Simulation(scenes.gas(n=40, seed=2)) as sim:
+        if begin:
+            sim.run(until=begin)
+        sim.record(path, every=0.5)
+        sim.record_events(right)
+        sim.run(until=3.3)
+        sim.gravity = (0, 0, -1)
+        sim.run(until=5)
+    convert(carom.load(path), converted)
+    old, new = carom.load_events(right), carom.load_events(converted)
+    assert new.about == old.about
+    for name in ("time", "i", "j", "impulse", "kind", "wall"):
+        assert (getattr(new, name) == getattr(old, name)).all(), name
+    results = []
+    for file in (right, converted):  # replayed from what the file holds of the start
+        z = carom.observe.WallPressure()
+        carom.measure(file, z)
+        results.append(str(z.result()))
+    assert results[0] == results[1]
+
+
 def test_h5py_is_asked_for_where_it_is_missing(path, tmp_path, monkeypatch):
     run = record(path, scenes.two_balls())
     monkeypatch.setitem(__import__("sys").modules, "h5py", None)
