@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 from carom.errors import FileError, InputError
 from carom.record import layout
 
+#: What reading a chunk of a damaged file may raise; its size, too, may be nonsense.
+_UNREADABLE = (KeyError, MemoryError, OSError, RuntimeError, TypeError, ValueError)
+
 
 class Damaged(FileError):
     """Bytes that are not what was written."""
@@ -63,7 +66,10 @@ class File:
 
     def names(self, frame: int) -> list[str]:
         """Names of the chunks that a frame has, as the file's index says."""
-        known = self._gsd.find_matching_chunk_names("")
+        try:
+            known = self._gsd.find_matching_chunk_names("")
+        except UnicodeDecodeError:
+            raise self.damage(frame, "the names cannot be read") from None
         return [name for name in known if self._gsd.chunk_exists(frame, name)]
 
     def sums(self, frame: int) -> dict[str, int]:
@@ -71,9 +77,8 @@ class File:
         if frame not in self._sums:
             try:
                 raw = self._gsd.read_chunk(frame, layout.CHECKSUMS)
-                sums = json.loads(raw.tobytes())
-                assert all(type(value) is int for value in sums.values())
-            except (KeyError, ValueError, OSError, RuntimeError, AssertionError, AttributeError):
+                sums = dict(json.loads(raw.tobytes()))
+            except _UNREADABLE:
                 raise self.damage(frame, "its checksums cannot be read") from None
             if len(self._sums) > 64:  # of many thousand frames they would take much memory
                 self._sums.clear()
@@ -95,7 +100,7 @@ class File:
         written = self.sums(frame).get(name)
         try:
             chunk: NDArray[Any] = self._gsd.read_chunk(frame, name)
-        except (KeyError, OSError, RuntimeError, ValueError):
+        except _UNREADABLE:
             raise self.damage(frame, f"{name} cannot be read") from None
         if layout.checksum(name, chunk) != written:
             raise self.damage(frame, f"{name} is not what was written")
