@@ -19,8 +19,8 @@ from carom.cli.comparing import side_by_side
 from carom.cli.measuring import measure
 from carom.cli.observing import as_data as observed_data
 from carom.cli.observing import observables, sheets, tables
-from carom.cli.replaying import show_recording
 from carom.cli.recording import Force, check, convert, info
+from carom.cli.replaying import show_recording
 from carom.cli.resuming import (
     CheckpointEvery,
     EventFile,
