@@ -21,6 +21,8 @@ from carom.errors import (
     RunError,
     UnknownNameError,
 )
+from carom.event_file import Events, load_events
+from carom.measuring import measure
 from carom.observe.observable import log_times
 from carom.record import Recording, load
 from carom.rendering import render
@@ -40,6 +42,7 @@ __all__ = [
     "CaromError",
     "CollapseError",
     "Cylinder",
+    "Events",
     "FileError",
     "InputError",
     "Open",
@@ -58,7 +61,9 @@ __all__ = [
     "Vector",
     "__version__",
     "load",
+    "load_events",
     "log_times",
+    "measure",
     "observe",
     "render",
     "scenes",

@@ -5,6 +5,7 @@ from types import TracebackType
 from typing import Self
 
 from carom.errors import InputError
+from carom.event_file.recorder import EventRecorder
 from carom.methods import Method
 from carom.record import load
 from carom.record.again import resume
@@ -18,6 +19,49 @@ class Keeping(Running):
 
     _scene: Scene | None
     _method: Method
+    _tick: float
+
+    def record_events(self, path: str | Path, *, overwrite: bool = False) -> EventRecorder:
+        """Write every event of every run from now on into a file (docs/events.md).
+
+        Recording changes no bit of the motion and holds 2^18 events in memory. The file is
+        complete once it is closed: by `EventRecorder.stop`, by `close`, at the end of a ``with``
+        block of either, or when the program ends.
+
+        Parameters
+        ----------
+        path : str or Path
+            ``.parquet`` (needs ``pip install carom[analysis]``) or ``.npz``.
+        overwrite : bool
+            Replace a file that is there.
+
+        Returns
+        -------
+        EventRecorder
+
+        Raises
+        ------
+        InputError
+            If the name ends otherwise, the file is there already, or pyarrow is missing.
+        FileError
+            If the file cannot be written.
+        """
+        file = Path(path)
+        for other in self._motion.followers:
+            if isinstance(other, EventRecorder) and other.path.resolve() == file.resolve():
+                msg = f"{file} is being written already; stop that recording first"
+                raise InputError(msg)
+        if file.exists() and not overwrite:
+            msg = f"{file} is there already; give another name, or overwrite=True to replace it"
+            raise InputError(msg)
+        scene, origin = self._scene, None if self._scene is None else self._scene.origin
+        about = {
+            "scene": origin and {"name": origin.name, "options": origin.options},
+            "seed": None if scene is None or scene.seed is None else int(scene.seed),
+            "method": self._method if isinstance(self._method, str) else None,
+            "tick": self._tick,
+        }
+        return EventRecorder(self._motion, file, about)
 
     def record(
         self,

@@ -92,7 +92,10 @@ def test_two_widgets_live_side_by_side(notebook):
     assert second.evaluate("[carom.scene.n, carom.look.color]") == [25, "speed"]
     # What is done to one reaches its simulation and not the other's.
     first.get_by_role("button", name="Pause", exact=True).click()
-    until(first, "carom.timeline.newest.playing === false && carom.timeline.t === carom.timeline.newest.t")
+    until(
+        first,
+        "carom.timeline.newest.playing === false && carom.timeline.t === carom.timeline.newest.t",
+    )
     stood = sims[0].time
     first.evaluate("carom.laws.spheres.changed(0.25)")
     until(first, "carom.settings.restitution === 0.25")
@@ -101,7 +104,9 @@ def test_two_widgets_live_side_by_side(notebook):
     went = sims[1].time
     until(second, f"carom.timeline.t > {went}")
     assert sims[0].time == stood
-    assert first.evaluate("document.body.dataset.theme") == second.evaluate("document.body.dataset.theme")
+    assert first.evaluate("document.body.dataset.theme") == second.evaluate(
+        "document.body.dataset.theme"
+    )
     hidden = "['gallery-button', 'keep', 'film'].every((id) => document.getElementById(id).hidden)"
     assert first.evaluate(hidden)
 

@@ -55,7 +55,11 @@ def picture(shown):
 
 
 def test_it_plays_stops_and_is_scrubbed(play, tmp_path):
-    shown = play(film(tmp_path / "gas.html", carom.Simulation(scenes.build("gas", {"n": 60})), 300, speed=0.1))
+    shown = play(
+        film(
+            tmp_path / "gas.html", carom.Simulation(scenes.build("gas", {"n": 60})), 300, speed=0.1
+        )
+    )
     assert shown.page.title() == "Gas in a box · carom"
     shown.wait("carom.timeline.t > 0.2")
     first = picture(shown)
@@ -148,7 +152,7 @@ def test_it_fits_a_phone(play, tmp_path):
         shown = play(path, width, height, has_touch=True)
         for name in ("film", "bar"):
             box = shown.page.locator(f"#{name}").bounding_box()
-            assert 0 <= box["x"]
+            assert box["x"] >= 0
             assert box["x"] + box["width"] <= width
             assert box["y"] + box["height"] <= height
         film_box, bar = (shown.page.locator(f"#{n}").bounding_box() for n in ("film", "bar"))
@@ -201,8 +205,8 @@ def test_what_is_kept_is_bounded(show):
     bounds = shown.js(
         """[2, 1000, 10000, 100000].map((n) => {
           const recorder = new carom.recorder.constructor();
-          const scene = { n, about: { key: 0 }, radius: new Float32Array(n), bytes: { length: 16 * n } };
-          recorder.setScene(scene);
+          const [radius, bytes] = [new Float32Array(n), { length: 16 * n }];
+          recorder.setScene({ n, about: { key: 0 }, radius, bytes });
           for (let k = 0; k < 4000; k++) recorder.push({ t: k, clock: k / 60, playing: true });
           const { keyframes: kept } = recorder;
           return [kept.length * n * 28, kept.at(-1).clock - kept[0].clock];

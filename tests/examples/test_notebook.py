@@ -15,9 +15,7 @@ def executed(notebook):
     from nbclient import NotebookClient
 
     notebook = notebook.copy()
-    NotebookClient(
-        notebook, timeout=120, kernel_name="python3", store_widget_state=False
-    ).execute()
+    NotebookClient(notebook, timeout=120, kernel_name="python3", store_widget_state=False).execute()
     notebook.metadata = {
         "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
         "language_info": {"name": "python"},

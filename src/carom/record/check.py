@@ -117,9 +117,9 @@ def _follow(run: Recording, begin: int, end: int) -> Iterator[tuple[int, int]]:
             differs = differs or "events"
         if head["dissipated"] != account["dissipated"] + engine.dissipated:
             differs = differs or "dissipated"
-        if run.file.has(place, layout.CHECKPOINT) and place > begin:
-            stored = run.file.read(place, layout.CHECKPOINT).tobytes()
-            differs = differs or ("checkpoint" if stored != engine.checkpoint() else "")
+        if run.file.has(place, layout.CHECKPOINT):
+            engine = engine_at(run, place)  # what follows shows whether it is right
+            differs = differs or difference(engine, run.file, place, head)
         if differs:
             msg = (
                 f"frame {place}, time {head['time']:.9g}: {differs} as recorded by carom "

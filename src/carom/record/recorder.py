@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from carom.checks import number
 from carom.errors import InputError
+from carom.frame import Frame
 from carom.motion import Motion
 from carom.observe.batch import Moment
 from carom.record import hoomd, layout
@@ -52,6 +53,7 @@ class Recorder:
         self._standing: hoomd.Chunks = {}
         self._segment, self._open = -1, False
         self._origin, self._step = 0.0, 0
+        self._overlap = 0.0
         self._last_time, self._last_checkpoint = math.nan, False
         self._events: list[NDArray[Any]] = []
         self._waiting, self._parts = 0, 0
@@ -67,7 +69,9 @@ class Recorder:
         """Go on with a file from its last frame, at which the motion is now."""
         about = layout.manifest(run.scene, self._every, self._checkpoint_frames)
         self._opening = [(layout.MANIFEST, layout.as_json(about))]
-        self._segment, self._origin = (run.heads[place][name] for name in ("segment", "origin"))
+        head = run.heads[place]
+        self._segment, self._origin = head["segment"], head["origin"]
+        self._overlap = head["max_overlap"]
         standard = (name for name in run.file.sums(0) if not name.startswith("carom/"))
         self._first = {name: run.file.read(0, name) for name in standard}
         self._standing = self._own(hoomd.standing(self._motion.state))
@@ -144,6 +148,14 @@ class Recorder:
         finally:
             self._writer.close()
 
+    def _frame(self, *, look_closely: bool) -> Frame:
+        """Take this moment; a look at all neighbours for overlaps costs as much as all the rest."""
+        motion = self._motion
+        if look_closely:
+            self._overlap = motion.max_overlap
+        errors = self._overlap, motion.energy_drift, motion.missed
+        return Frame(motion.state, motion.surroundings, motion.dissipated, motion.withheld, *errors)
+
     def _own(self, chunks: hoomd.Chunks) -> hoomd.Chunks:
         """Those a frame needs of its own: readers take the others from the first frame."""
         first = self._first
@@ -155,7 +167,7 @@ class Recorder:
 
     def _write(self, *, checkpoint: bool, new_spheres: bool = False) -> None:
         """Write a frame of now."""
-        frame, writer = self._motion.frame(), self._writer
+        frame, writer = self._frame(look_closely=checkpoint), self._writer
         for name, chunk in self._opening:
             writer.chunk(name, chunk)
         self._opening = []

@@ -144,9 +144,9 @@ class Page:
         if snapshot.scene_number != self._scene_number:
             self._scene_number = snapshot.scene_number
             data.insert(0, snapshot.scene)
-        for key, (number, text) in snapshot.notes.items():
-            if self._notes.get(key) != number:
-                self._notes[key] = number
+        for key, (version, text) in snapshot.notes.items():
+            if self._notes.get(key) != version:
+                self._notes[key] = version
                 self.send({"text": text}, [])
         self.send({}, data)
 
@@ -161,7 +161,7 @@ def _look_after_cells() -> None:
         from IPython import get_ipython
     except ImportError:
         return
-    if (shell := get_ipython()) is not None:  # type: ignore[no-untyped-call]
+    if (shell := get_ipython()) is not None:
         shell.events.register("post_run_cell", _look)
 
 
@@ -183,7 +183,7 @@ def _widget_class() -> Any:
     except ImportError as missing:
         raise InputError(MISSING) from missing
 
-    class View(anywidget.AnyWidget):
+    class View(anywidget.AnyWidget):  # type: ignore[misc]
         """A page in a frame of its own."""
 
         _esm = (FOLDER / "notebook.js").read_text(encoding="utf-8")

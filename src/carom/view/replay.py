@@ -208,8 +208,8 @@ def pack(
     """Make the reel of a motion, and its title."""
     first: Any = None
     rows: list[list[float]] = []
-    places: list[Floats] = []
-    speeds: list[Floats] = []
+    places: list[Any] = []
+    speeds: list[Any] = []
     counts: list[Any] = []
     for frame in source.frames(at=times):
         first = frame if first is None else first

@@ -6,6 +6,7 @@
 import { saveFile } from "./file.js";
 import { encodeReel } from "./reel.js";
 import { toast } from "./toast.js";
+import { FRAME_HEADER_BYTES, SPHERE_BYTES } from "./wire.js";
 
 const MINUTE = 60; // seconds
 const [FEWEST, MOST] = [10, 30]; // keyframes per second that are kept
@@ -33,7 +34,7 @@ export class Recorder {
     this.scene = scene;
     if (same) return;
     this.keyframes = [];
-    const room = Math.floor(MEMORY / (scene.bytes.length / scene.n + 28) / scene.n);
+    const room = Math.floor(MEMORY / (FRAME_HEADER_BYTES + SPHERE_BYTES * scene.n));
     const rate = Math.min(MOST, Math.max(FEWEST, room / MINUTE));
     this.most = Math.max(2, Math.min(room, rate * MINUTE));
     this.gap = 1 / rate;
