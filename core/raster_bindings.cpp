@@ -120,7 +120,5 @@ void bind_raster(nb::module_& m) {
                      "radius: NDArray[numpy.float64], color: NDArray[numpy.uint32], "
                      "own: int) -> "
                      "NDArray[numpy.uint8]"),
-             "A picture: (height, width, 3), red, green and blue. All but the first `own` spheres "
-             "are "
-             "images of these.");
+             "(height, width, 3). All but the first `own` spheres are images of these.");
 }

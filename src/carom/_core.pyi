@@ -181,5 +181,5 @@ class Raster:
         own: int,
     ) -> NDArray[numpy.uint8]:
         """
-        A picture: (height, width, 3), red, green and blue. All but the first `own` spheres are images of these.
+        (height, width, 3). All but the first `own` spheres are images of these.
         """

@@ -6,10 +6,10 @@ import io
 import numpy as np
 import pytest
 from PIL import Image
+from tests.unit.seen import coarse, distance
 
 import carom
 from carom import scenes
-from tests.unit.seen import coarse, distance
 
 #: The page's picture without its panels, in its best quality, in the size of the viewport.
 DRAWN = """async () => {

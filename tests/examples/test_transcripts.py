@@ -26,6 +26,7 @@ def blocks(name, language):
         ("observe.md", 9),
         ("record.md", 9),
         ("replay.md", 3),
+        ("render.md", 5),
     ],
 )
 def test_python(page, fewest, tmp_path, monkeypatch):
@@ -44,11 +45,12 @@ def test_python(page, fewest, tmp_path, monkeypatch):
     "body",
     [
         b
-        for b in blocks("command-line.md", "console")
+        for b in blocks("command-line.md", "console") + blocks("render.md", "console")
         if "carom show" not in b and "carom sketch" not in b
     ],
 )
-def test_command_line(capsys, body):
+def test_command_line(capsys, body, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # where a command may write its file
     command, expected = body.split("\n", 1)
     assert command.startswith("$ carom ")
     with pytest.raises(SystemExit):

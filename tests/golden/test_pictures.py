@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from tests.unit.seen import coarse, distance
 
 import carom
 from carom import scenes
-from tests.unit.seen import coarse, distance
 
 PICTURES = Path(__file__).parent / "pictures"
 SIZE = (192, 108)

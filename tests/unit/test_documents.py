@@ -42,7 +42,7 @@ def test_relative_links_lead_somewhere(document: Path) -> None:
     assert missing == []
 
 
-@pytest.mark.parametrize("name", ["README.md", "docs/index.md", "docs/render.md"])
+@pytest.mark.parametrize("name", ["README.md", "docs/index.md"])
 def test_examples_run_as_printed(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
