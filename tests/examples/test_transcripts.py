@@ -34,6 +34,12 @@ def test_python(page, fewest, tmp_path, monkeypatch):
     assert runner.tries > fewest
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Where commands leave files for those that come after them."""
+    return tmp_path_factory.mktemp("transcripts")
+
+
 @pytest.mark.parametrize(
     "body",
     [
@@ -42,7 +48,8 @@ def test_python(page, fewest, tmp_path, monkeypatch):
         if "carom show" not in b and "carom sketch" not in b
     ],
 )
-def test_command_line(capsys, body):
+def test_command_line(capsys, body, folder, monkeypatch):
+    monkeypatch.chdir(folder)
     command, expected = body.split("\n", 1)
     assert command.startswith("$ carom ")
     with pytest.raises(SystemExit):
