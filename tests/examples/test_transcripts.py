@@ -19,9 +19,10 @@ def blocks(name, language):
 
 
 @pytest.mark.parametrize(
-    ("page", "fewest"), [("python.md", 30), ("theory.md", 6), ("observe.md", 9)]
+    ("page", "fewest"), [("python.md", 30), ("theory.md", 6), ("observe.md", 9), ("events.md", 10)]
 )
-def test_python(page, fewest):
+def test_python(page, fewest, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # where an example may save its file
     parser, runner = doctest.DocTestParser(), doctest.DocTestRunner(optionflags=FLAGS)
     names: dict[str, object] = {}
     for number, body in enumerate(blocks(page, "python")):
