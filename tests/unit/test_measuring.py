@@ -226,6 +226,8 @@ class TestBadInput:
     def test_what_is_no_observable_or_has_no_meaning(self, path):
         with pytest.raises(carom.InputError, match="takes observables such as"):
             carom.measure(path, "msd")
+        with pytest.raises(carom.InputError, match=r"source must be a file, .* not 42"):
+            carom.measure(42, observe.MSD())
         with pytest.raises(carom.InputError, match="WallPressure"):
             carom.measure(path, observe.WallPressure())
 

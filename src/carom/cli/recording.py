@@ -130,7 +130,11 @@ def _sentence(verdict: Verdict) -> str:
 def convert(
     recording: RecordingName,
     target: Annotated[
-        Path, typer.Argument(metavar="FILE", help="run.xyz (extended XYZ) or run.h5 (H5MD).")
+        Path,
+        typer.Argument(
+            metavar="FILE",
+            help="run.xyz (extended XYZ), run.h5 (H5MD); events.parquet, events.npz (its events).",
+        ),
     ],
     force: Force = False,
     json: Json = False,

@@ -96,7 +96,7 @@ class EventRecorder:
 
     def __init__(self, motion: Motion, path: str | Path, about: Mapping[str, Any]) -> None:
         self._motion, self._file = motion, OpenFile(Path(path))
-        self._file.about.update(_about(), **about)
+        self._file.about.update(about_file(), **about)
         self._was_cut = False
         motion.followers.append(self)
         self._finalizer = weakref.finalize(motion, self._file.close)
@@ -187,7 +187,8 @@ class EventRecorder:
         self.stop()
 
 
-def _about() -> dict[str, Any]:
+def about_file() -> dict[str, Any]:
+    """What every event file says of itself."""
     try:
         carom = version("carom")
     except PackageNotFoundError:  # run from the source tree

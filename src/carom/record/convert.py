@@ -1,6 +1,7 @@
-"""Recordings in the formats of others: extended XYZ and H5MD."""
+"""Recordings in other formats: extended XYZ, H5MD, and their events as event files."""
 
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -8,9 +9,13 @@ import numpy as np
 
 from carom.checks import nearest
 from carom.errors import FileError, InputError, UnknownNameError
+from carom.event_file.layout import packed
+from carom.event_file.recorder import OpenFile, about_file
+from carom.event_file.source import ENDINGS
 from carom.frame import Frame
 from carom.record import hoomd, layout
 from carom.record.recording import Recording
+from carom.walls import wall_names
 
 Progress = Callable[[int, int], object]  #: frames done, frames in all
 
@@ -22,14 +27,15 @@ def convert(run: Recording, path: str | Path, progress: Progress | None = None) 
     ----------
     run : Recording
     path : str or Path
-        ``.xyz`` is extended XYZ, ``.h5`` is H5MD (by way of h5py).
+        ``.xyz`` is extended XYZ, ``.h5`` is H5MD (by way of h5py). ``.parquet`` and ``.npz``
+        hold the events, see `carom.load_events`.
     progress : callable, optional
         ``(done, all)``, called after each frame.
 
     Raises
     ------
     InputError
-        If the name ends otherwise, h5py is missing, or H5MD cannot hold the recording.
+        If the name ends otherwise, h5py or pyarrow is missing, or H5MD cannot hold the recording.
     FileError
         If the file cannot be written.
     """
@@ -55,7 +61,7 @@ def _counted(run: Recording, progress: Progress) -> Iterator[Frame]:
 
 # Extended XYZ.
 
-COLUMNS = "species:S:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1:id:I:1"
+COLUMNS = "type:I:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1:id:I:1"
 
 
 def _xyz(run: Recording, path: Path, progress: Progress) -> None:
@@ -140,4 +146,55 @@ def _h5md_frames(group: Any, run: Recording, progress: Progress) -> None:
         series["edges"][k] = hoomd.lengths(frame.state, frame.world)
 
 
-FORMATS: dict[str, Callable[[Recording, Path, Progress], None]] = {".xyz": _xyz, ".h5": _h5md}
+# Event files, docs/events.md.
+
+
+def _events(run: Recording, path: Path, progress: Progress) -> None:
+    with closing(OpenFile(path)) as file:
+        _start(file, run)
+        for k in range(1, len(run)):
+            if run.changed(k - 1):
+                file.about.setdefault("changed", file.about["end"])
+            file.add(run.told(k - 1))
+            file.about["end"] = _so_far(file, run[k])
+            progress(k + 1, len(run))
+
+
+def _start(file: OpenFile, run: Recording) -> None:
+    """Put into an event file what it replays from."""
+    first = run[0]
+    file.about = about_file() | {
+        "carom": run.manifest["carom"],
+        "scene": run.manifest["scene"]
+        and {"name": run.manifest["scene"], "options": run.manifest["options"]},
+        "seed": run.manifest["seed"],
+        "method": run.manifest["method"],
+        "tick": 1.0,
+        "n": len(first),
+        "walls": list(wall_names(first.walls)),
+        "before": _before(run),
+    }
+    file.arrays = packed(first.state, first.world)
+    checkpoint = run.file.read(run.place(0), layout.CHECKPOINT)
+    if len(checkpoint) and first.time > run.segment(run.place(0)).built.time:
+        file.arrays["engine"] = checkpoint  # it was under way
+    file.about["end"] = _so_far(file, first)
+
+
+def _before(run: Recording) -> dict[str, Any]:
+    """What had been counted when the first engine was built."""
+    account, built = run.heads[run.place(0)]["account"], run.segment(run.place(0)).built
+    counts = {"collisions": built.collisions, "wall_collisions": built.wall_collisions}
+    return counts | {name: account[name] for name in ("dissipated", "withheld", "overlap")}
+
+
+def _so_far(file: OpenFile, frame: Frame) -> dict[str, Any]:
+    counts = {"collisions": frame.collisions, "wall_collisions": frame.wall_collisions}
+    return {"events": file.count, "time": frame.time, **counts}
+
+
+FORMATS: dict[str, Callable[[Recording, Path, Progress], None]] = {
+    ".xyz": _xyz,
+    ".h5": _h5md,
+    **dict.fromkeys(ENDINGS, _events),
+}

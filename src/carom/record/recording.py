@@ -166,8 +166,7 @@ class Recording:
         before = self[k]
         if before.time == time:
             return before
-        parts = [self.file.events(place) for place, _ in self._between(k)]
-        events = np.concatenate(parts)
+        events = self.told(k)
         events = events[events["time"] <= time]
         state = later(before.state, before.world, events, time)
         return replace(before, state=state, dissipated=before.dissipated + _taken(before, state))
@@ -211,29 +210,37 @@ class Recording:
         parts = [np.zeros(0, EVENT)]
         k = max(0, int(np.searchsorted(self.times, first, side="left")) - 1)
         while k < len(self) - 1 and self.times[k] <= last:
-            for place, until in self._between(k):
-                found = self.file.events(place)
-                parts.append(found[(found["time"] >= first) & (found["time"] <= min(last, until))])
+            found = self.told(k)
+            parts.append(found[(found["time"] >= first) & (found["time"] <= last)])
             k += 1
         return np.concatenate(parts)
 
-    def _between(self, k: int) -> Iterator[tuple[int, float]]:
-        """Frames of the file with the events between frames k and k + 1, and until when they count.
-
-        Those after that were undone by going back in time.
-        """
+    def told(self, k: int) -> NDArray[Any]:
+        """What happened between frames k and k + 1, (n,) EVENT."""
         place, follows = self._places[k], self._places[k + 1]
-        goes_on = self._same_segment(place, follows)
-        end = np.inf if goes_on else self.heads[follows]["time"]
+        end = np.inf  # what happened after it was undone by going back in time
+        if not self._same_segment(place, follows):
+            end = self.heads[follows]["time"]
+        parts = [np.zeros(0, EVENT)]
         for between in range(place + 1, follows + 1):
             if not self._same_segment(place, between) or self.heads[between - 1]["time"] > end:
-                return
-            yield between, end
+                break
+            found = self.file.events(between)
+            parts.append(found[found["time"] <= end])
+        return np.concatenate(parts)
+
+    def changed(self, k: int) -> bool:
+        """Whether something was changed from outside between frames k and k + 1."""
+        return not self._same_segment(self._places[k], self._places[k + 1])
 
     def _same_segment(self, a: int, b: int) -> bool:
         return bool(self.heads[a]["segment"] == self.heads[b]["segment"])
 
     # What is in the file.
+
+    def place(self, k: int) -> int:
+        """Where frame k is among all those in the file."""
+        return self._places[k]
 
     def segment(self, place: int) -> Segment:
         """The segment to which a frame of the file belongs."""

@@ -52,8 +52,9 @@ class Writer:
                 schema_version=layout.SCHEMA_VERSION,
             )
         except (OSError, RuntimeError) as error:
+            self._unlock()
             raise self._refusal(error) from error
-        if mode == "x":
+        if self._lock is None:
             self._take_lock()
         self._sums: dict[str, int] = {}
         self._flushed = 0.0
@@ -74,13 +75,17 @@ class Writer:
             self._lock = self.path.open("rb")  # closing it lets go
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            self._lock.close()
+            self._unlock()
             msg = f"another program is writing {self.path} now; wait for its end, or end it"
             raise FileError(msg) from None
         except FileNotFoundError:  # nothing there to be replaced
             return
         except OSError as error:
             raise self._refusal(error) from error
+
+    def _unlock(self) -> None:
+        if self._lock is not None:
+            self._lock.close()
 
     def chunk(self, name: str, data: NDArray[Any]) -> None:
         """Add a chunk to the frame; the array must stay as it is."""
@@ -96,8 +101,7 @@ class Writer:
         if self._thread.is_alive():
             self._queue.put((_CLOSE, None))
             self._thread.join()
-            if self._lock is not None:
-                self._lock.close()
+            self._unlock()
         self._complain()
 
     def _put(self, job: tuple[str, Any]) -> None:
