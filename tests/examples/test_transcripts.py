@@ -20,7 +20,7 @@ def blocks(name, language):
 
 @pytest.mark.parametrize(
     ("page", "fewest"),
-    [("python.md", 30), ("theory.md", 6), ("observe.md", 9), ("record.md", 9)],
+    [("python.md", 30), ("theory.md", 6), ("observe.md", 9), ("record.md", 9), ("events.md", 10)],
 )
 def test_python(page, fewest, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # where an example may save its file
