@@ -82,7 +82,7 @@ public:
 
     // Every j with |centre - centre_j| < reach + reach_j (nearest image) or a hair more, none
     // twice: i itself only if it is in the cells while it searches. The answer is the same from
-    // both sides. `shell_of` is asked only where cells are few or met twice.
+    // both sides. `shell_of` is asked only where far places share a cell.
     template <class ShellOf>
     void search(const Shell& s, const ShellOf& shell_of, Found& out) const {
         out.n = 0;
@@ -226,13 +226,14 @@ private:
     struct Range {
         int64_t first, count, n;  // wrapping at n
         double before;            // from the first cell to the searcher's
-        bool exact;               // none is met twice and none is far: places tell distances
+        bool around;              // all there are: what is far may be nearer the other way round
     };
     static Range range(double u, double radius, int64_t n) {
         const double own = floored(u), part = u - own;
         const double lo = floored(part - radius), count = floored(part + radius) - lo + 1;
-        if (!(count < double(n))) return {0, n, n, 0, false};
-        return {wrap(own + lo, n), int64_t(count), n, -lo, count <= CellBlock::kMost};
+        if (count < double(n)) return {wrap(own + lo, n), int64_t(count), n, -lo, false};
+        const auto before = double((n - 1) / 2);
+        return {wrap(own - before, n), n, n, before, true};
     }
     static void fill(CellBlock::Axis& a, const Range& r, double u, double steps, int64_t stride) {
         a.n = int32_t(r.count);
@@ -244,6 +245,9 @@ private:
             slot = slot + 1 == r.n ? 0 : slot + 1;
         }
     }
+    static int16_t way_round(const Range& r, double steps) {
+        return int16_t(r.around ? nearest(double(r.n) * steps) : INT16_MAX);
+    }
 
     template <class ShellOf>
     void search(const Level& l, const Shell& s, const ShellOf& shell_of, Found& out) const {
@@ -251,12 +255,18 @@ private:
         const Vec3 u = in_cells(s.centre, l), radius = l.inverse_width * s.reach;
         const Range x = range(u.x, radius.x + 0.5, l.n[0]), y = range(u.y, radius.y + 0.5, l.n[1]),
                     z = range(u.z, radius.z + 0.5, l.n[2]);
-        // Two places and a step between cells are rounded: 3 > sqrt(3) (1 + 1/2).
-        const int reach = fine_reach(s.reach, l) + 3;
-        if (!x.exact || !y.exact || !z.exact || reach >= (1 << 14))
+        const bool around = x.around || y.around || z.around;
+        // Two places and a step between cells are rounded, and the way round: 3 > sqrt(3) (1 + 1/2)
+        // and 4 > sqrt(3) 2.
+        const int reach = fine_reach(s.reach, l) + (around ? 4 : 3);
+        if (std::max({x.count, y.count, z.count}) > CellBlock::kMost || reach >= (1 << 13))
             return all(l, x, y, z, s, shell_of, out);
         CellBlock block;
         block.minus_reach = int16_t(-reach);
+        block.around = around;
+        block.way_round[0] = way_round(x, l.steps[0]);
+        block.way_round[1] = way_round(y, l.steps[1]);
+        block.way_round[2] = way_round(z, l.steps[2]);
         fill(block.x, x, u.x, l.steps[0], 1);
         fill(block.y, y, u.y, l.steps[1], x.n);
         fill(block.z, z, u.z, l.steps[2], x.n * y.n);

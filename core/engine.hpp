@@ -30,8 +30,10 @@
 
 namespace carom {
 
-// So many spheres are found in the caches: beyond, looking ahead pays (measured on both sides).
+// So many spheres are found in the caches: beyond, looking ahead pays. And so many in the cache
+// next to the processor: beyond, it pays to bring some lines there. Measured on both sides.
 constexpr size_t kListsInCache = 30000, kGridInCache = 64000;
+constexpr size_t kListsAtHand = 6000, kGridAtHand = 12000;
 
 constexpr int kEndless = 60;  // doublings: such a shell is wider than positions are resolved
 
@@ -176,6 +178,7 @@ private:
 
     // ahead.cpp
     void look_ahead() const;
+    void bring_near() const;
     void ask_for_pair(int i, int32_t j) const;
     void ask_for_rows(int i, const Event& e) const;
     void ask_for_row_neighbours(int i, const Event& e) const;
@@ -245,7 +248,8 @@ private:
     double common_ = 0, giant_ = 0;  // radius the cells are made for; above which one is a giant
     double cell_ = 0;                // width of the smallest cells
     bool sort_ = true;
-    bool far_ = false;  // neighbours are far away in memory: they do not all fit into the cache
+    bool far_ = false;     // neighbours are far away in memory: they do not all fit into the cache
+    bool at_hand_ = true;  // all fit into the cache next to the processor
     Rows rows_;
     Cells cells_;
     Calendar calendar_;

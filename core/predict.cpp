@@ -294,7 +294,10 @@ void Engine::make_sure(int i) {
 }
 
 void Engine::open_bucket() {
-    if (!far_) return;
+    if (!far_) {
+        if (!at_hand_) bring_near();
+        return;
+    }
     look_ahead();
     calendar_.review(pending(), [this](int i) {
         if (!is_guess(next_partner(events_[size_t(i)]))) return false;

@@ -151,7 +151,13 @@ bool Engine::choose_grid(const Tuning& tuning) {
     }
     Vec3 centre, size;
     if (!room(centre, size)) return false;
-    const double volume = size.x * size.y * size.z;
+    double volume = size.x * size.y * size.z;
+    for (const Wall& w : world_.walls) {
+        const double r2 = w.offset * w.offset;
+        if (w.kind == WallKind::sphere) volume = std::min(volume, kSpherical * r2 * w.offset);
+        if (w.kind == WallKind::cylinder)
+            volume = std::min(volume, 0.75 * kSpherical * r2 * size.z);
+    }
     const double packing = kSpherical * section / volume;
     const double dilute = spheres_.size() > kGridInCache ? kDiluteAndFar : kDilute;
     if (tuning.grid < 0 && packing > dilute && spheres_.size() < kMany) return false;

@@ -155,8 +155,9 @@ void Engine::focus() {
     focused_until_ = now_ + 1.5 * span_;
     if (!glancing_) return;
     glances_.resize(size());
-    far_ =
-        tuning_.ahead < 0 ? size() > (gridded_ ? kGridInCache : kListsInCache) : tuning_.ahead == 1;
+    const bool asked = tuning_.ahead >= 0;
+    far_ = asked ? tuning_.ahead == 1 : size() > (gridded_ ? kGridInCache : kListsInCache);
+    at_hand_ = !asked && size() <= (gridded_ ? kGridAtHand : kListsAtHand);
     const double epoch = span_;
     double energy = 0;
     for (const Sphere& s : spheres_) energy += norm2(s.v);

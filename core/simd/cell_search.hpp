@@ -55,13 +55,26 @@ using SixteenBytes [[gnu::vector_size(16)]] = uint8_t;
 #endif
 }
 
+// How far it is, and by the other way round if that is nearer.
+[[gnu::always_inline]] inline EightPairs shorter(EightPairs d, EightPairs way_round) {
+    d = d < 0 ? -d : d;
+    const EightPairs other = way_round - d;
+    return other < d ? other : d;
+}
+
 // The shells of one line whose place is nearer than both reaches: appended to `out`, which has room
 // for eight. x^2 + y^2 + z^2 - r^2 < 0, its terms multiplied two by two. The eighth lane is no
 // shell.
+template <bool kAround>
 [[gnu::always_inline]] inline int32_t near_in_line(const CellLine& line, EightPairs from_xy,
-                                                   EightPairs from_zr, int32_t* out) {
-    const EightPairs xy = from_xy - from_bytes(line.xy), zr = from_zr - from_bytes(line.zr),
-                     sign = {1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1};
+                                                   EightPairs from_zr, EightPairs round_xy,
+                                                   EightPairs round_z, int32_t* out) {
+    EightPairs xy = from_xy - from_bytes(line.xy), zr = from_zr - from_bytes(line.zr);
+    if constexpr (kAround) {
+        xy = shorter(xy, round_xy);
+        zr = shorter(zr, round_z);
+    }
+    constexpr EightPairs sign = {1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1, 1, -1};
     Eight id;
     __builtin_memcpy(&id, line.id, 32);
     const Eight inside = (dot(xy, xy) + dot(zr, zr * sign)) & ~id;  // its sign tells
@@ -80,8 +93,11 @@ using SixteenBytes [[gnu::vector_size(16)]] = uint8_t;
 #endif
 }
 
-// How many shells are nearer than both reaches; -1 if `out` may not have room for all.
-int32_t near(const CellLine* lines, const CellBlock& block, int32_t* out, int32_t room) {
+template <bool kAround>
+[[gnu::always_inline]] inline int32_t near_in_block(const CellLine* lines, const CellBlock& block,
+                                                    int32_t* out, int32_t room) {
+    const EightPairs round_xy = eight_times(block.way_round[0], block.way_round[1]),
+                     round_z = eight_times(block.way_round[2], INT16_MAX);
     int32_t found = 0;
     for (int kz = 0; kz < block.z.n; ++kz) {
         const EightPairs zr = eight_times(block.z.seen[kz], block.minus_reach);
@@ -91,12 +107,19 @@ int32_t near(const CellLine* lines, const CellBlock& block, int32_t* out, int32_
                 const EightPairs xy = eight_times(block.x.seen[kx], block.y.seen[ky]);
                 for (int32_t at = row + block.x.line[kx]; at >= 0; at = lines[at].next) {
                     if (found + 8 > room) return -1;
-                    found += near_in_line(lines[at], xy, zr, out + found);
+                    found +=
+                        near_in_line<kAround>(lines[at], xy, zr, round_xy, round_z, out + found);
                 }
             }
         }
     }
     return found;
+}
+
+// How many shells are nearer than both reaches; -1 if `out` may not have room for all.
+int32_t near(const CellLine* lines, const CellBlock& block, int32_t* out, int32_t room) {
+    return block.around ? near_in_block<true>(lines, block, out, room)
+                        : near_in_block<false>(lines, block, out, room);
 }
 
 #if defined(__SSSE3__) && !defined(__AVX512VL__)

@@ -38,6 +38,7 @@ struct alignas(64) CellLine {
 static_assert(sizeof(CellLine) == 64);
 
 // A block of cells to look into, and where the searcher is, seen from each, in steps of a cell.
+// Where the block goes all the way round, what is far one way may be near the other.
 struct CellBlock {
     static constexpr int kMost = 64;  // cells along an axis
     struct Axis {
@@ -46,6 +47,8 @@ struct CellBlock {
         int16_t seen[kMost];
     } x, y, z;
     int16_t minus_reach;
+    bool around = false;
+    int16_t way_round[3];  // along each axis, in steps: far more than any distance if not all of it
 };
 
 // Four spheres that share a cell of the grid, as a quarter of a cache line.

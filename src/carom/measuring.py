@@ -35,10 +35,10 @@ def measure(
 ) -> None:
     """Let observables watch a run that is over, as ``run(observe=...)`` would have.
 
-    The run is run again by the method it was recorded with, and each of its events is compared
-    with the recorded one. So the results are those of observing it at the time, to the bit. An
-    event file is run from its beginning, whatever `start` is; a recording from the last
-    checkpoint before.
+    The run is run again by the method it was recorded with (an engine of your own is taken to be
+    exact), and each of its events is compared with the recorded one. So the results are those of
+    observing it at the time, to the bit. An event file is run from its beginning, whatever `start`
+    is; a recording from the last checkpoint before.
 
     Parameters
     ----------
@@ -73,6 +73,9 @@ def measure(
         return
     if isinstance(source, Events):
         run = of_events(source)
+    elif not isinstance(source, Recording):
+        msg = f"source must be a file, or what load_events() or load() returned, not {source!r:.60}"
+        raise InputError(msg)
     else:
         run = of_recording(source, source.start if start is None else number("start", start))
     replay = Replay(run)

@@ -25,6 +25,7 @@ def blocks(name, language):
         ("theory.md", 6),
         ("observe.md", 9),
         ("record.md", 9),
+        ("events.md", 10),
         ("replay.md", 3),
         ("render.md", 5),
     ],
@@ -41,6 +42,12 @@ def test_python(page, fewest, tmp_path, monkeypatch):
     assert runner.tries > fewest
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Where commands leave files for those that come after them."""
+    return tmp_path_factory.mktemp("transcripts")
+
+
 @pytest.mark.parametrize(
     "body",
     [
@@ -49,8 +56,8 @@ def test_python(page, fewest, tmp_path, monkeypatch):
         if "carom show" not in b and "carom sketch" not in b
     ],
 )
-def test_command_line(capsys, body, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)  # where a command may write its file
+def test_command_line(capsys, body, folder, monkeypatch):
+    monkeypatch.chdir(folder)
     command, expected = body.split("\n", 1)
     assert command.startswith("$ carom ")
     with pytest.raises(SystemExit):

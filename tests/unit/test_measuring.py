@@ -213,19 +213,25 @@ class TestBadInput:
         with pytest.raises(carom.InputError, match=r"differs from what carom .* recorded"):
             carom.measure(path, observe.MSD())
 
-    def test_events_that_are_missing(self, path):
+    def test_events_that_will_never_come(self, tmp_path):
+        path = tmp_path / "events.npz"
+        with carom.Simulation() as sim:
+            sim.add_many([(0, 0, 0), (3, 0, 0)], velocity=[(1, 0, 0), (0, 0, 0)])
+            sim.record_events(path)
+            sim.run(until=5)
         with np.load(path) as file:
             arrays = dict(file)
         about = json.loads(str(arrays["about"]))
         about["end"]["collisions"] += 1
-        arrays["about"] = json.dumps(about)
-        np.savez(path, **arrays)
+        np.savez(path, **{**arrays, "about": json.dumps(about)})
         with pytest.raises(carom.InputError, match="does not follow from its start"):
-            carom.measure(path, observe.MSD())
+            carom.measure(path, observe.CollisionsPerSphere())
 
     def test_what_is_no_observable_or_has_no_meaning(self, path):
         with pytest.raises(carom.InputError, match="takes observables such as"):
             carom.measure(path, "msd")
+        with pytest.raises(carom.InputError, match=r"source must be a file, .* not 42"):
+            carom.measure(42, observe.MSD())
         with pytest.raises(carom.InputError, match="WallPressure"):
             carom.measure(path, observe.WallPressure())
 

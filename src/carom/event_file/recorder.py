@@ -4,7 +4,6 @@ import math
 import weakref
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Protocol, Self
@@ -189,6 +188,8 @@ class EventRecorder:
 
 def about_file() -> dict[str, Any]:
     """What every event file says of itself."""
+    from importlib.metadata import PackageNotFoundError, version  # takes a tenth of the import
+
     try:
         carom = version("carom")
     except PackageNotFoundError:  # run from the source tree

@@ -2,12 +2,10 @@
 
 import io
 import json
-import platform
 import sys
 import zlib
 from dataclasses import fields, replace
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +14,6 @@ from numpy.typing import NDArray
 
 from carom.kept import Surroundings
 from carom.scene import Scene, Spheres
-from carom.scene_file import dump, parse
 from carom.state import EVENT, State
 
 SCHEMA, SCHEMA_VERSION = "hoomd", (1, 4)  # what OVITO, freud and MDAnalysis look for
@@ -44,6 +41,8 @@ MANIFEST, SCENE, SPHERES = "carom/manifest", "carom/scene", "carom/spheres"
 
 def carom_version() -> str:
     """The version that is installed."""
+    from importlib.metadata import PackageNotFoundError, version  # takes a tenth of the import
+
     try:
         return version("carom")
     except PackageNotFoundError:
@@ -57,6 +56,8 @@ def events_name(k: int) -> str:
 
 def manifest(scene: Scene | None, every: float, checkpoint_frames: int) -> dict[str, Any]:
     """What is told about how a recording came to be."""
+    import platform
+
     origin = None if scene is None else scene.origin
     return {
         "format": FORMAT,
@@ -76,7 +77,7 @@ def manifest(scene: Scene | None, every: float, checkpoint_frames: int) -> dict[
     }
 
 
-# Bytes in chunks.
+# Bytes in chunks. What reads and writes scene files is heavy and waits until it is used.
 
 
 def as_bytes(data: bytes) -> NDArray[np.uint8]:
@@ -121,23 +122,31 @@ def unpacked_state(chunk: NDArray[np.uint8]) -> State:
 
 def packed_surroundings(around: Surroundings) -> NDArray[np.uint8]:
     """Walls, rule, gravity and collide as a scene file without spheres."""
+    from carom.scene_file import dump
+
     values = {f.name: getattr(around, f.name) for f in fields(around)}
     return as_bytes(dump(Scene(_nobody(), **values)).encode())
 
 
 def unpacked_surroundings(chunk: NDArray[np.uint8]) -> Surroundings:
     """The same, back."""
+    from carom.scene_file import parse
+
     return Surroundings.of(parse(chunk.tobytes().decode(), "the recording's walls and rule"))
 
 
 def packed_scene(scene: Scene) -> list[tuple[str, NDArray[np.uint8]]]:
     """A scene as two chunks: a scene file without its spheres, and the spheres."""
+    from carom.scene_file import dump
+
     text = dump(replace(scene, spheres=_nobody()))
     return [(SCENE, as_bytes(text.encode())), (SPHERES, packed(scene.spheres))]
 
 
 def unpacked_scene(text: NDArray[np.uint8], spheres: NDArray[np.uint8]) -> Scene:
     """The same, back; which scene of the library it was is not in it."""
+    from carom.scene_file import parse
+
     scene = parse(text.tobytes().decode(), "the recording's scene")
     return replace(scene, spheres=Spheres(**_unpacked(spheres)))
 
