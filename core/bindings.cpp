@@ -1,4 +1,4 @@
-// The only file that knows Python.
+// The engine's part of the Python module carom._core; raster_bindings.cpp has the pictures'.
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/map.h>
@@ -147,6 +147,8 @@ auto helfand_advance(Helfand& h, const Bytes& records, const Numbers& times) {
 
 }  // namespace
 
+void bind_raster(nb::module_& m);  // in raster_bindings.cpp
+
 NB_MODULE(_core, m) {
     m.doc() = "The event loop in C++: moves spheres from one collision to the next.";
 
@@ -257,4 +259,6 @@ NB_MODULE(_core, m) {
         },
         nb::arg("position"), nb::arg("radius"), nb::arg("fixed"), nb::arg("period"),
         "The deepest overlapping pair (i, j, depth), or None.");
+
+    bind_raster(m);
 }

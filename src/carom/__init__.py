@@ -21,7 +21,11 @@ from carom.errors import (
     RunError,
     UnknownNameError,
 )
+from carom.event_file import Events, load_events
+from carom.measuring import measure
 from carom.observe.observable import log_times
+from carom.record import Recording, load
+from carom.rendering import render
 from carom.rules import Smooth
 from carom.scene import Camera, Scene, Spheres
 from carom.simulation import Bookmark, Simulation
@@ -38,12 +42,14 @@ __all__ = [
     "CaromError",
     "CollapseError",
     "Cylinder",
+    "Events",
     "FileError",
     "InputError",
     "Open",
     "OverlapError",
     "Periodic",
     "Plane",
+    "Recording",
     "RunError",
     "Scene",
     "Simulation",
@@ -54,8 +60,12 @@ __all__ = [
     "UnknownNameError",
     "Vector",
     "__version__",
+    "load",
+    "load_events",
     "log_times",
+    "measure",
     "observe",
+    "render",
     "scenes",
 ]
 

@@ -1,5 +1,6 @@
 """The event loop in C++: moves spheres from one collision to the next."""
 
+from collections.abc import Sequence
 from typing import Annotated
 
 import numpy
@@ -173,3 +174,39 @@ def first_overlap(
     ],
 ) -> tuple[int, int, float] | None:
     """The deepest overlapping pair (i, j, depth), or None."""
+
+class Raster:
+    """Draws pictures of spheres in a room, from one place."""
+
+    def __init__(
+        self,
+        width: int,
+        height: int,
+        samples: int,
+        pixel: float,
+        eye: Annotated[
+            NDArray[numpy.float64], dict(shape=(4, 3), order="C", device="cpu", writable=False)
+        ],
+        look: dict[str, object],
+        faces: Annotated[
+            NDArray[numpy.float64], dict(shape=(None, 23), order="C", device="cpu", writable=False)
+        ],
+        edges: Annotated[
+            NDArray[numpy.float64], dict(shape=(None, 8), order="C", device="cpu", writable=False)
+        ],
+        shells: Sequence[float],
+    ) -> None:
+        """
+        eye: place, right, up, forward. faces and edges: rows as in core/raster/picture.hpp.
+        """
+
+    def draw(
+        self,
+        position: NDArray[numpy.float64],
+        radius: NDArray[numpy.float64],
+        color: NDArray[numpy.uint32],
+        own: int,
+    ) -> NDArray[numpy.uint8]:
+        """
+        (height, width, 3). All but the first `own` spheres are images of these.
+        """

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from carom import edits, fit, mechanics
 from carom.engine import NO_LIMIT, Engine, Resumable, Stop
 from carom.errors import InputError
+from carom.followers import Follower, Listener
+from carom.frame import Frame
 from carom.interrupts import HeldInterrupt
 from carom.kept import Account, EventKeeper, Serials, Start, Surroundings
-from carom.observe.feed import Feed
 from carom.scene import Spheres
 from carom.state import State
 from carom.walls import wall_names
@@ -83,6 +84,8 @@ class Motion:
         self._kept = EventKeeper(keep_events)
         self._logs = keep_events > 0
         self._born = 0
+        #: They hear of every run and of every change between; see `carom.followers`.
+        self.followers: list[Follower] = []
         self.begin(state, surroundings)
 
     def begin(self, state: State, surroundings: Surroundings) -> None:
@@ -90,6 +93,7 @@ class Motion:
         self._begin(Start(state, surroundings, self._new_serials(len(state)), edited=False))
 
     def _begin(self, start: Start) -> None:
+        self._cut()
         self._engine: Engine | None = None
         self._snapshot: State | None = start.state
         self._built = start.state
@@ -100,6 +104,10 @@ class Motion:
         self.surroundings, self.world = start.surroundings, start.surroundings.world()
         self._account = Account(mechanics.energy(start.state, self.world))
         self._kept.clear()
+
+    def _cut(self) -> None:
+        for follower in self.followers:
+            follower.cut(self)
 
     def _new_serials(self, n: int) -> Serials:
         """Numbers no sphere of this motion has had. They ascend, so a search finds one."""
@@ -115,6 +123,11 @@ class Motion:
             self._snapshot = self._engine.state()
         assert self._snapshot is not None
         return self._snapshot
+
+    def frame(self) -> Frame:
+        """Take this moment as something that lasts."""
+        errors = self.max_overlap, self.energy_drift, self.missed
+        return Frame(self.state, self.surroundings, self.dissipated, self.withheld, *errors)
 
     @property
     def start(self) -> Start:
@@ -203,6 +216,7 @@ class Motion:
     ) -> None:
         """Go on from another state, or in other surroundings, or with other spheres."""
         there = self.world if surroundings is None else surroundings.world()
+        self._cut()
         # Energy that a change brings is given, so the drift goes on counting errors only.
         self._account = self._closed(mechanics.energy(state, there))
         self._engine, self._snapshot, self.world = None, state, there
@@ -279,6 +293,7 @@ class Motion:
         if saved.of is not self:
             msg = "this bookmark is of another simulation; return to one of this simulation's own"
             raise InputError(msg)
+        self._cut()
         engine: Engine | None = None
         if saved.engine is not None:
             same = self._built is saved.built and self.world is saved.world
@@ -299,15 +314,19 @@ class Motion:
         collisions: int = NO_LIMIT,
         events: int = NO_LIMIT,
         progress: Callable[[], object] | None = None,
-        feed: Feed | None = None,
+        feed: Listener | None = None,
     ) -> Stop:
         """Run to a time or for a count; Ctrl-C and `progress` get a turn between slices.
 
-        `feed` gets all events, and the moments it asks for: the engine stops exactly there.
+        `feed` and the followers get all events, and the moments they ask for: the engine stops
+        exactly there.
         """
         self._kept.clear()
         self._start = self.start
-        engine = self._ready(log=feed is not None and feed.takes_events)
+        listeners = [*self.followers, *([] if feed is None else [feed])]
+        engine = self._ready(log=any(one.takes_events for one in listeners))
+        for follower in self.followers:
+            follower.begin(self)
         pairs, walls = engine.collisions, engine.wall_collisions
         watch = Watch(engine)
         stop = Stop.SLICE
@@ -316,27 +335,28 @@ class Motion:
                 while stop is Stop.SLICE:
                     hits = engine.collisions - pairs
                     total = hits + engine.wall_collisions - walls
-                    due = min(until, math.inf if feed is None else feed.due)
+                    due = min([until, *(one.due for one in listeners)])
                     stop = Stop(engine.advance(due, collisions - hits, events - total))
                     self._snapshot = None
                     records = engine.take_events()
                     self._kept.append(records)
-                    if feed is not None:
-                        feed.events(records)
-                        feed.moment(self)
-                        if stop is Stop.TIME and due < until:
-                            stop = Stop.SLICE
-                            if until == math.inf and watch.nothing_left(self._probe):
-                                stop = Stop.IDLE
+                    for one in listeners:
+                        one.events(records)
+                    for one in listeners:
+                        one.moment(self)
+                    if stop is Stop.TIME and due < until:
+                        stop = Stop.SLICE
+                        if until == math.inf and watch.nothing_left(self._probe):
+                            stop = Stop.IDLE
                     if progress is not None:
                         progress()
                     interrupt.deliver()
         except KeyboardInterrupt:
-            if feed is not None:
-                feed.end(self)
+            for one in listeners:
+                one.end(self)
             raise
-        if feed is not None:
-            feed.end(self)
+        for one in listeners:
+            one.end(self)
         return stop
 
     def _ready(self, log: bool) -> Engine:

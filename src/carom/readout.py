@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from carom import mechanics
 from carom.checks import triple
 from carom.errors import InputError
+from carom.frame import readonly
 from carom.motion import Motion
 from carom.rules import Smooth
 from carom.state import Floats, State
@@ -17,13 +18,6 @@ from carom.walls import Wall, as_walls
 from carom.world import World
 
 EVERY = slice(None)
-
-
-def readonly(array: NDArray[Any]) -> Any:
-    """A view that refuses changes in place, which no engine would notice."""
-    view = array.view()
-    view.flags.writeable = False
-    return view
 
 
 class Readout:

@@ -1,7 +1,7 @@
 """Letting time run: how far, what is called meanwhile, and what is said if it cannot go on."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from typing import Any, Self
 
@@ -9,6 +9,7 @@ from carom import mechanics
 from carom.checks import number
 from carom.engine import Stop
 from carom.errors import CollapseError, InputError, RunError
+from carom.frame import Frame, moments
 from carom.observe.feed import Feed
 from carom.placing import Placing
 from carom.walls import wall_names
@@ -78,6 +79,43 @@ class Running(Placing):
             stop = self._run_count(name, int(goal), turn, feed)
         if stop is Stop.COLLAPSE:
             raise CollapseError(self._collapse_message())
+
+    def frames(
+        self,
+        *,
+        every: float | None = None,
+        at: Iterable[float] | None = None,
+        until: float | None = None,
+    ) -> Iterator[Frame]:
+        """Let time run and stop at exactly these moments, to look.
+
+        Parameters
+        ----------
+        every : float
+            Simulated time between frames; the first is now.
+        at : iterable of float
+            Rising times instead, from now on.
+        until : float, optional
+            No frame after this time; with `every` alone they never end.
+
+        Yields
+        ------
+        Frame
+            It stays as it is when time goes on.
+
+        Raises
+        ------
+        InputError
+            If not exactly one of `every` and `at` is given, or a time cannot be used.
+        RunError
+            See `run`.
+        """
+        return self._frames(moments(self.time, every=every, at=at, until=until))
+
+    def _frames(self, times: Iterator[float]) -> Iterator[Frame]:
+        for time in times:
+            self.run(until=time)
+            yield self._motion.frame()
 
     def _end(self, name: str, value: float) -> float:
         if name == "duration":

@@ -11,6 +11,7 @@ from carom import fit
 from carom.checks import Triple, nearest, number, triple
 from carom.color import SPECIES, Colors, packed_many
 from carom.errors import InputError, UnknownNameError
+from carom.markup import html_picture, html_table
 from carom.rules import Smooth
 from carom.state import Floats, State
 from carom.walls import Open, Wall, as_walls, wall_names, world
@@ -272,6 +273,19 @@ class Scene:
             )
             raise UnknownNameError(msg)
 
+    def _repr_html_(self) -> str:
+        # By hand: a scene that cannot be built yet is shown too.
+        rows = [
+            ("spheres", f"{len(self.spheres)}"),
+            ("walls", ", ".join(type(wall).__name__ for wall in self.walls)),
+            ("rule", repr(self.rule)),
+            *([("gravity", f"{self.gravity}")] if any(self.gravity) else []),
+            *([] if self.collide else [("collide", "no: spheres pass through one another")]),
+            ("pace", f"{self.pace:g} time units per second"),
+            *([] if self.origin is None else [("from", f"{self.origin.name}")]),
+        ]
+        return html_table(self.title or "Scene", rows) + html_picture(self._repr_png_())
+
     def build(self) -> tuple[State, World]:
         """Check everything and hand out what an engine is built from.
 
@@ -297,6 +311,16 @@ class Scene:
         state.position, state.image = fit.wrap(state.position, the_world.period)
         fit.check(state, the_world, wall_names(self.walls))
         return state, the_world
+
+    def _repr_png_(self) -> bytes | None:
+        """Show a notebook its start; None, as notebooks expect, where that cannot be built."""
+        from carom.pictures.picture import small_png
+
+        try:
+            state, the_world = self.build()
+        except InputError:
+            return None
+        return small_png(state, the_world, self)
 
 
 def _only(kinds: Any, name: str, value: Any) -> None:

@@ -4,8 +4,8 @@ import copy
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from types import TracebackType
-from typing import Self
+from pathlib import Path
+from typing import Any, Self
 
 import numpy as np
 
@@ -13,11 +13,13 @@ from carom.checks import number
 from carom.errors import InputError
 from carom.kept import Surroundings
 from carom.listing import Listing
+from carom.markup import html_picture, html_table
 from carom.methods import TICKS_PER_SECOND, Method, engine_maker
 from carom.motion import Motion, Saved
 from carom.rules import Smooth
-from carom.running import Running, count
+from carom.running import count
 from carom.scene import Scene, Spheres
+from carom.showing import Showing
 from carom.state import State
 from carom.walls import Open, Wall
 
@@ -42,7 +44,7 @@ class Bookmark:
     saved: Saved = field(repr=False)
 
 
-class Simulation(Running):
+class Simulation(Showing):
     """Spheres that move and collide.
 
     Parameters
@@ -65,6 +67,8 @@ class Simulation(Running):
         Length of one step of ``method="tick"``.
     keep_events : int
         How many of the newest events of a run `events` holds, 40 bytes each.
+    record : str or Path, optional
+        A file for everything that happens, see `record`; use the simulation with ``with`` then.
 
     Raises
     ------
@@ -93,6 +97,7 @@ class Simulation(Running):
         method: Method = "exact",
         tick: float = 1.0,
         keep_events: int = 1_000_000,
+        record: str | Path | None = None,
     ) -> None:
         changes = {"walls": walls, "rule": rule, "gravity": gravity, "collide": collide}
         changes = {name: value for name, value in changes.items() if value is not None}
@@ -106,6 +111,8 @@ class Simulation(Running):
         state = State.empty() if scene is None else described.build()[0]
         limit = count("keep_events", keep_events)
         self._motion = self._moved(state, Surroundings.of(described), limit)
+        if record is not None:
+            self.record(record)
 
     def _moved(self, state: State, around: Surroundings, keep_events: int) -> Motion:
         """What carries spheres on by this simulation's method."""
@@ -313,16 +320,45 @@ class Simulation(Running):
 
         serve(self, host=host, port=port, open_browser=open_browser, on_ready=announce)
 
-    def __enter__(self) -> Self:
-        return self
+    def _repr_html_(self) -> str:
+        rows = [
+            ("spheres", f"{len(self)}"),
+            ("time", f"{self.time:.6g}"),
+            ("collisions", f"{self.collisions}, {self.wall_collisions} with walls"),
+            ("kinetic energy", f"{self.kinetic_energy:.6g}"),
+            ("temperature", f"{self.temperature:.6g}"),
+            ("relative change of energy", f"{self.energy_drift:.1e}"),
+            ("method", self._method if isinstance(self._method, str) else repr(self._method)),
+        ]
+        title = "" if self._scene is None else self._scene.title
+        return html_table(title or "Simulation", rows) + html_picture(self._repr_png_())
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        return None
+    def view(self, *, color: str | None = None, height: int = 480) -> Any:
+        """Show it live in a notebook's cell; needs ``pip install carom[notebook]``.
+
+        The page's buttons and sliders act on this simulation. While a cell runs the view waits,
+        and afterwards shows what the cell has done.
+
+        Parameters
+        ----------
+        color : str, optional
+            "energy", "speed", "collisions", "species" or "own"; as the scene asks for if left out.
+        height : int
+            Of the view, in pixels.
+
+        Returns
+        -------
+        anywidget.AnyWidget
+            Any number of them can show one simulation.
+
+        Raises
+        ------
+        InputError
+            If a value cannot be used, or anywidget is not installed.
+        """
+        from carom.view import notebook
+
+        return notebook.live(self, color=color, height=height)
 
     def __repr__(self) -> str:
         method = self.method if isinstance(self.method, str) else "its own"

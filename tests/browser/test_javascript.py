@@ -5,17 +5,21 @@ import os
 import re
 import shutil
 import subprocess
+import zlib
 from importlib import resources
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from carom import sketch
+import carom
+from carom import scenes, sketch
 from carom.sketch.message import encode
 from carom.sketch.recorder import CURRENT, Recorder
 from carom.state import State
 from carom.view.protocol import Meters, decode_command, encode_frame, encode_scene
+from carom.view.reel import decode
+from carom.view.replay import pack
 from carom.view.wire import OPERATIONS, VERSION
 
 HERE = Path(__file__).parent / "js"
@@ -41,7 +45,7 @@ def node(name, **environment):
 
 
 NAMES = sorted(
-    {path.name.split(".")[0] for path in HERE.glob("*.test.mjs")} - {"protocol", "sketch"}
+    {path.name.split(".")[0] for path in HERE.glob("*.test.mjs")} - {"protocol", "reel", "sketch"}
 )
 
 
@@ -115,6 +119,37 @@ def test_protocol_on_both_sides(tmp_path):
     assert values["add"] == {
         "position": (1, 2, 3), "velocity": (0, 0, 1), "radius": 0.5, "mass": 2, "color": 0xFF0000
     }  # fmt: skip
+
+
+def test_reels_on_both_sides(tmp_path):
+    """The page computes the same bits as Python from the same file."""
+    scene = scenes.build("gas", {"n": 60, "seed": 4})
+    sim = carom.Simulation(scene, keep_events=10_000)
+    times = np.arange(60) / 30 * sim.pace
+    data, _ = pack(sim, times, color=None, title=None, speed=2.0, progress=None)
+    (tmp_path / "python.reel").write_bytes(data)
+    body = zlib.decompress(data).replace(b'"format": 1', b'"format":99')
+    (tmp_path / "later.reel").write_bytes(zlib.compress(body))
+    again = carom.Simulation(scene, keep_events=10_000)
+    again.run(until=times[-1])
+    events = [
+        {"t": e["time"], "i": int(e["i"]), "j": int(e["j"]), "impulse": e["impulse"].tolist()}
+        for e in again.events
+        if e["j"] >= 0
+    ]
+    (tmp_path / "events.json").write_text(json.dumps({"collisions": events}))
+    node("reel.test.mjs", CAROM_EXCHANGE=str(tmp_path))
+    reel = decode(data)
+    rows = np.fromfile(tmp_path / "javascript.spheres", np.float32).reshape(60, 7, 60)
+    flat = rows.reshape(60, -1)
+    for part, truth in ((flat[:, :180], reel.position), (flat[:, 180:360], reel.velocity)):
+        assert np.array_equal(part.reshape(60, 60, 3).transpose(0, 2, 1), truth.astype(np.float32))
+    assert np.array_equal(flat[:, 360:].view(np.uint32), reel.counts)
+    back = decode((tmp_path / "javascript.reel").read_bytes())
+    assert np.array_equal(back.columns, reel.columns)
+    assert np.array_equal(back.counts, reel.counts)
+    assert (back.scene, back.speed) == (reel.scene, 2.0)
+    assert np.abs(back.position - reel.position).max() < 1e-5 * np.ptp(reel.position)
 
 
 def test_sketches_on_both_sides(tmp_path):

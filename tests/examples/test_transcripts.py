@@ -19,9 +19,19 @@ def blocks(name, language):
 
 
 @pytest.mark.parametrize(
-    ("page", "fewest"), [("python.md", 30), ("theory.md", 6), ("observe.md", 9)]
+    ("page", "fewest"),
+    [
+        ("python.md", 30),
+        ("theory.md", 6),
+        ("observe.md", 9),
+        ("record.md", 9),
+        ("events.md", 10),
+        ("replay.md", 3),
+        ("render.md", 5),
+    ],
 )
-def test_python(page, fewest):
+def test_python(page, fewest, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # where an example may save its file
     parser, runner = doctest.DocTestParser(), doctest.DocTestRunner(optionflags=FLAGS)
     names: dict[str, object] = {}
     for number, body in enumerate(blocks(page, "python")):
@@ -32,15 +42,22 @@ def test_python(page, fewest):
     assert runner.tries > fewest
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Where commands leave files for those that come after them."""
+    return tmp_path_factory.mktemp("transcripts")
+
+
 @pytest.mark.parametrize(
     "body",
     [
         b
-        for b in blocks("command-line.md", "console")
+        for b in blocks("command-line.md", "console") + blocks("render.md", "console")
         if "carom show" not in b and "carom sketch" not in b
     ],
 )
-def test_command_line(capsys, body):
+def test_command_line(capsys, body, folder, monkeypatch):
+    monkeypatch.chdir(folder)
     command, expected = body.split("\n", 1)
     assert command.startswith("$ carom ")
     with pytest.raises(SystemExit):

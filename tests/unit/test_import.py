@@ -7,7 +7,7 @@ import pytest
 
 import carom
 
-HEAVY = ("scipy", "pydantic", "typer", "rich", "websockets", "asyncio", "matplotlib")
+HEAVY = ("scipy", "pydantic", "typer", "rich", "websockets", "asyncio", "matplotlib", "pyarrow")
 
 
 def run(code):

@@ -16,8 +16,23 @@ from carom.cli import report
 from carom.cli.benching import bench
 from carom.cli.comparing import compare as compare_both
 from carom.cli.comparing import side_by_side
+from carom.cli.measuring import measure
 from carom.cli.observing import as_data as observed_data
 from carom.cli.observing import observables, sheets, tables
+from carom.cli.recording import Force, check, convert, info
+from carom.cli.rendering import render_file
+from carom.cli.replaying import show_recording
+from carom.cli.resuming import (
+    CheckpointEvery,
+    EventFile,
+    Every,
+    Output,
+    Plan,
+    Resume,
+    counted,
+    resumed,
+    what_was_kept,
+)
 from carom.cli.running import as_data, execute, goal, summary
 from carom.cli.sketching import sketch
 from carom.cli.source import parsed, source, whole
@@ -44,6 +59,12 @@ app = typer.Typer(
 
 SceneName = Annotated[
     str, typer.Argument(metavar="SCENE|FILE.toml", help="A scene's name, or a scene file.")
+]
+ShownName = Annotated[
+    str,
+    typer.Argument(
+        metavar="SCENE|FILE.toml|RUN.gsd", help="A scene's name, a scene file or a recording."
+    ),
 ]
 Seed = Annotated[str | None, typer.Option(metavar="N", help="Of the scene's random numbers.")]
 Method = Annotated[
@@ -138,7 +159,7 @@ def _print_options(name: str, quiet: bool) -> None:
 @app.command(context_settings=LOOSE)
 def show(
     context: typer.Context,
-    scene: SceneName = DEFAULT_SCENE,
+    scene: ShownName = DEFAULT_SCENE,
     port: Annotated[str, typer.Option(metavar="N", help="0 takes a free one.")] = "0",
     host: Annotated[
         str,
@@ -156,13 +177,16 @@ def show(
     json: Json = False,
     quiet: Quiet = False,
 ) -> None:
-    """Show a scene live in the browser; Ctrl-C ends it."""
+    """Show a scene live in the browser, or a recording as a replay; Ctrl-C ends it."""
     words = context.args
     if scene.startswith("-"):  # `carom show --seed 3` needs no scene, `--n 5` has one
         words, scene = [scene, *words], DEFAULT_SCENE
-    found = source(scene, words, whole("seed", seed))
     number = whole("port", port)
     assert number is not None
+    if scene.endswith(".gsd"):
+        show_recording(scene, words, host, number, no_browser=no_browser, json=json, quiet=quiet)
+        return
+    found = source(scene, words, whole("seed", seed))
     sim = found.simulation(method, parsed("tick", tick))
 
     def ready(view: LiveView) -> None:
@@ -200,6 +224,12 @@ def run(
         str | None,
         typer.Option(metavar="A,B", help="What to measure: compressibility, msd ...; or list."),
     ] = None,
+    output: Output = None,
+    every: Every = None,
+    checkpoint_every: CheckpointEvery = None,
+    force: Force = False,
+    record_events: EventFile = None,
+    resume: Resume = None,
     seed: Seed = None,
     json: Json = False,
     quiet: Quiet = False,
@@ -208,20 +238,32 @@ def run(
 
     The scene's own options go here too, as in: carom run fluid --n 1e6 --seed 2
     """
-    found = source(scene, context.args, whole("seed", seed))
+    times = parsed("every", every), parsed("checkpoint-every", checkpoint_every)
+    plan = Plan(output, *times, force, record_events)
+    if resume is not None:
+        given = scene or context.args or seed or tick or method != "exact" or plan.asked
+        found, sim = resumed(resume, refuse=bool(given), ends=(until, collisions, events))
+    else:
+        found = source(scene, context.args, whole("seed", seed))
     aim = goal(
         found.scene.pace,
         until=parsed("until", until),
         collisions=whole("collisions", collisions),
-        events=whole("events", events),
+        events=counted(events),
     )
     observed = observables(observe)
-    sim = found.simulation(method, parsed("tick", tick))
+    if resume is None:
+        sim = found.simulation(method, parsed("tick", tick))
+        plan.begin(sim)
     start = sim.state
-    outcome = execute(sim, aim, quiet=quiet or json, label=found.name, observe=[*observed.values()])
+    with sim:
+        outcome = execute(
+            sim, aim, quiet=quiet or json, label=found.name, observe=[*observed.values()]
+        )
+    kept = plan.kept(resume)
     results = tables(observed)
     if json:
-        data = as_data(sim, found, outcome)
+        data = as_data(sim, found, outcome) | kept
         report.write_json({**data, "observed": observed_data(results)} if observed else data)
     else:
         if found.name == "phase-2" and not quiet:
@@ -229,6 +271,8 @@ def run(
         report.output().print(summary(sim, found, aim, outcome))
         for part in sheets(results):
             report.output().print(part)
+        if kept and not quiet:
+            report.output().print(what_was_kept(kept), soft_wrap=True)
     if not outcome.complete:
         raise typer.Exit(INTERRUPTED)
 
@@ -263,6 +307,11 @@ def compare(
 app.command()(sketch)
 app.command()(bench)
 app.command()(validate)
+app.command("render", context_settings=LOOSE)(render_file)
+app.command()(measure)
+app.command()(info)
+app.command()(check)
+app.command()(convert)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

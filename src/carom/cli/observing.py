@@ -13,8 +13,8 @@ from carom.observe import OBSERVABLES, Observable, Table
 MOST_ROWS = 40  #: of a table on a terminal; --json has all
 
 
-def observables(names: str | None) -> dict[str, Observable]:
-    """Make the observables that a list of names asks for.
+def observables(names: str | None, what: str = "--observe") -> dict[str, Observable]:
+    """Make the observables that a list of names asks for; `what` takes such lists.
 
     Raises
     ------
@@ -30,10 +30,10 @@ def observables(names: str | None) -> dict[str, Observable]:
             close = nearest(plain, OBSERVABLES) if plain not in ("", "list") else ""
             msg = f"there is no observable {plain!r}{close}"
             if not close.startswith("; did"):
-                msg = f"--observe takes names with commas between them: {', '.join(OBSERVABLES)}"
+                msg = f"{what} takes names with commas between them: {', '.join(OBSERVABLES)}"
             raise UnknownNameError(msg)
         if plain in found:
-            msg = f"--observe names {plain} twice; once is enough"
+            msg = f"{what} names {plain} twice; once is enough"
             raise InputError(msg)
         found[plain] = OBSERVABLES[plain]()
     return found

@@ -104,13 +104,16 @@ def vector(values: Any) -> str:
     return "(" + ", ".join(f"{x:.3g}" if abs(x) > 1e-4 else f"{x:.1g}" for x in values) + ")"
 
 
-def numbers(sim: Simulation, seconds: float) -> dict[str, Any]:
-    """What every run reports, under the names of the JSON output."""
+def numbers(sim: Simulation, seconds: float, before: int = 0) -> dict[str, Any]:
+    """What every run reports, under the names of the JSON output.
+
+    `before` are collisions that were there when the clock was started.
+    """
     return {
         "time": sim.time,
         "collisions": sim.collisions,
         "wall_collisions": sim.wall_collisions,
-        "collisions_per_second": sim.collisions / seconds if seconds > 0 else 0.0,
+        "collisions_per_second": (sim.collisions - before) / seconds if seconds > 0 else 0.0,
         "energy_drift": sim.energy_drift,
         "momentum": sim.momentum.tolist(),
         "max_overlap": sim.max_overlap,

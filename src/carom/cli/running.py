@@ -59,10 +59,21 @@ def goal(pace: float, **options: float | None) -> Goal:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a run went: seconds it took, and whether Ctrl-C cut it short."""
+    """How a run went.
+
+    Attributes
+    ----------
+    seconds : float
+        That it took.
+    complete : bool
+        Whether Ctrl-C did not cut it short.
+    before : int
+        Collisions that an earlier run had counted.
+    """
 
     seconds: float
     complete: bool
+    before: int
 
 
 def execute(
@@ -82,19 +93,21 @@ def execute(
     ) as progress:
         task = progress.add_task(label, total=aim.value, hits="")
         begin = time.perf_counter()
+        before = sim.collisions
+        start = 0.0 if aim.name == "until" else _done(sim, aim.name)
 
         def show(now: Simulation) -> None:
-            speed = now.collisions / max(time.perf_counter() - begin, 1e-9)
+            speed = (now.collisions - before) / max(time.perf_counter() - begin, 1e-9)
             hits = f"{report.count(now.collisions)} collisions, {report.rate(speed)}/s"
-            progress.update(task, completed=_done(now, aim.name), hits=hits)
+            progress.update(task, completed=_done(now, aim.name) - start, hits=hits)
 
         try:
             sim.run(duration=0)  # builds the engine, so that the clock measures collisions only
             begin = time.perf_counter()
             sim.run(**{aim.name: aim.value}, progress=show, observe=observe)
         except KeyboardInterrupt:
-            return Outcome(time.perf_counter() - begin, complete=False)
-        return Outcome(time.perf_counter() - begin, complete=True)
+            return Outcome(time.perf_counter() - begin, False, before)
+        return Outcome(time.perf_counter() - begin, True, before)
 
 
 def _done(sim: Simulation, name: str) -> float:
@@ -109,7 +122,7 @@ def _done(sim: Simulation, name: str) -> float:
 def as_data(sim: Simulation, source: Source, outcome: Outcome) -> dict[str, Any]:
     """Everything about a run, for ``--json``."""
     return {
-        **report.numbers(sim, outcome.seconds),
+        **report.numbers(sim, outcome.seconds, outcome.before),
         "seconds": outcome.seconds,
         "complete": outcome.complete,
         "scene": source.name,
@@ -123,7 +136,7 @@ def as_data(sim: Simulation, source: Source, outcome: Outcome) -> dict[str, Any]
 
 def summary(sim: Simulation, source: Source, aim: Goal, outcome: Outcome) -> Group:
     """The table at the end of a run, and a line on what it means."""
-    found = report.numbers(sim, outcome.seconds)
+    found = report.numbers(sim, outcome.seconds, outcome.before)
     method = f"ticks of {report.decimal(sim.tick)}" if sim.method == "tick" else str(sim.method)
     facts = [f"{report.count(len(sim))} spheres", method]
     if source.scene.seed is not None:

@@ -16,7 +16,8 @@ from carom.simulation import Simulation
 #: Options of the commands themselves, so that a misspelt one gets the right suggestion.
 COMMAND_OPTIONS = (
     "until", "collisions", "events", "method", "tick", "seed", "json", "quiet",
-    "debug", "port", "host", "no-browser", "help",
+    "debug", "port", "host", "no-browser", "help", "output", "every", "checkpoint-every", "force",
+    "record-events", "resume",
 )  # fmt: skip
 
 

@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+from carom.markup import html_table
+
 
 @dataclass(frozen=True, repr=False)
 class Estimate:
@@ -75,6 +77,12 @@ class Estimate:
         many = "" if math.isnan(self.n_independent) else f", {self.n_independent:.0f} independent"
         note = f"; {self.note}" if self.note else ""
         return f"Estimate({self}{many}{note})"
+
+    def _repr_html_(self) -> str:
+        many = "" if math.isnan(self.n_independent) else f"{self.n_independent:.0f}"
+        row = (str(self), "" if math.isnan(self.error) else f"{self.error:.3g}", many)
+        heading = ("value", "standard error", "independent")
+        return html_table("", [row], heading=heading, notes=[self.note] if self.note else [])
 
     def __format__(self, spec: str) -> str:
         """With a format of numbers, write value ± error; without one, as `str`."""

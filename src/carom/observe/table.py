@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import FileError, InputError
+from carom.markup import html_table
 from carom.observe.estimate import Estimate
 
 UNKNOWN = "(?): too few independent samples to know the error; run longer"
@@ -133,6 +134,9 @@ class Table:
         return "\n".join([self.title, *text, *self.footnotes()])
 
     __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        return html_table(self.title, self.rows(), heading=self.heading(), notes=self.footnotes())
 
     def footnotes(self) -> list[str]:
         """The theory's name, the notes, and what (?) means where it stands."""

@@ -92,6 +92,7 @@ class Driver:
         self._playing, self._speed, self._reached = True, 1.0, 0.0
         self._failure = ""
         self._changed = True
+        self._last = time.perf_counter()
         #: What ended the thread before its time, if anything did.
         self.error: BaseException | None = None
         #: Called when the thread ends.
@@ -129,19 +130,33 @@ class Driver:
         self.on_end()
 
     def _loop(self) -> None:
-        self._run(0.0)  # builds the engine while the page loads
-        last = time.perf_counter()
+        self.prepare()
         while not self._stopping:
-            self._obey()
-            now = time.perf_counter()
-            moving = self._playing and self._watched()
-            self._resting = not moving
-            if moving:
-                self._step(now - last)
-            last = now
-            if self._changed and self._hungry():
-                self._hand_out()
-            self._rest(now + (INTERVAL if moving else IDLE), moving)
+            moving = self.turn()
+            self._rest(self._last + (INTERVAL if moving else IDLE), moving)
+
+    def prepare(self) -> None:
+        """Build the engine, while the page loads."""
+        self._run(0.0)
+        self._last = time.perf_counter()
+
+    def turn(self) -> bool:
+        """Obey what was ordered, let time run up to now, hand out; whether time runs."""
+        self._obey()
+        now = time.perf_counter()
+        moving = self._playing and self._watched()
+        self._resting = not moving
+        if moving:
+            self._step(now - self._last)
+        self._last = now
+        if self._changed and self._hungry():
+            self._hand_out()
+        return moving
+
+    def catch_up(self) -> None:
+        """Take note that somebody else has moved the simulation, or changed it."""
+        self._stage.catch_up()
+        self._failure, self._changed = "", True
 
     def _rest(self, until: float, moving: bool) -> None:
         """Wait for the next step. Orders are obeyed at once, and end the wait unless moving."""

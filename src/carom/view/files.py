@@ -63,6 +63,15 @@ def security_headers(hosts: Collection[str]) -> dict[str, str]:
         f"connect-src 'self' {sockets}; base-uri 'none'; form-action 'none'; "
         f"frame-ancestors 'none'"
     )
+    return _headers(policy)
+
+
+def replay_headers() -> dict[str, str]:
+    """Headers of a page that holds all it needs; its own policy forbids everything else."""
+    return _headers("frame-ancestors 'none'")
+
+
+def _headers(policy: str) -> dict[str, str]:
     return {
         "Content-Security-Policy": policy,
         "X-Content-Type-Options": "nosniff",

@@ -7,6 +7,7 @@ from types import TracebackType
 from typing import Self
 
 from carom.view import network, tokens
+from carom.view.bundle import template
 from carom.view.catalogue import catalogue
 from carom.view.driver import Driver
 from carom.view.files import VIEW, load
@@ -66,7 +67,7 @@ class LiveView:
             self._socket,
             self._names,
             {token: "control", watch: "watch"},
-            load(VIEW),
+            load(VIEW) | template(),
             order=lambda command, reply: self._driver.order(command, reply),
             poke=lambda: self._driver.poke(),
             welcome=(encode_text("catalogue", catalogue()),),

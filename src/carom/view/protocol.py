@@ -137,16 +137,20 @@ def encode_frame(now: Moment, meters: Meters) -> bytes:
         *(now.collisions, now.wall_collisions, m.speed, m.reached),
         *(*m.momentum, m.temperature, m.missed, m.overlap),
     )
-    still = (now.fixed | now.resting).astype(np.uint32)
-    counts = now.collision_count & np.uint32(wire.STILL - 1) | still * np.uint32(wire.STILL)
     return b"".join(
         (
             header,
             now.position.astype("<f4").tobytes(),
             now.velocity.astype("<f4").tobytes(),
-            counts.astype("<u4").tobytes(),
+            counts_of(now).astype("<u4").tobytes(),
         )
     )
+
+
+def counts_of(now: Moment) -> NDArray[np.uint32]:
+    """Impulses of each sphere, with the top bit where gravity does not act."""
+    still = (now.fixed | now.resting).astype(np.uint32)
+    return now.collision_count & np.uint32(wire.STILL - 1) | still * np.uint32(wire.STILL)
 
 
 def encode_scene(state: State, number: int, about: dict[str, Any]) -> bytes:

@@ -89,6 +89,8 @@ class Server:
         Told when a page can take a frame.
     welcome : collection of str
         Texts sent to every page after it has said hello.
+    headers : mapping, optional
+        Of every answer; those of `security_headers` if left out.
     """
 
     def __init__(
@@ -100,6 +102,7 @@ class Server:
         order: Callable[[Command, Reply], None],
         poke: Callable[[], None],
         welcome: Collection[str] = (),
+        headers: Mapping[str, str] | None = None,
     ) -> None:
         self._socket, self._tokens, self._files = listening, tokens, files
         self._order, self._poke, self._welcome = order, poke, welcome
@@ -107,7 +110,7 @@ class Server:
         # Browsers leave out the port of http.
         self._hosts = {f"{name}:{port}" if port != 80 else name for name in hosts}
         self._origins = {f"http://{host}" for host in self._hosts}
-        self._headers = security_headers(self._hosts)
+        self._headers = security_headers(self._hosts) if headers is None else headers
         self._door = Door()
         self._source_at = -SOURCE_EVERY
         # Replaced, never changed in place: the driver's thread reads it without a lock.

@@ -367,6 +367,12 @@ class Stage:
     def _gauge(self) -> WallPressure:
         return WallPressure(self.sim.world, self.sim.state, STRETCH * self.sim.pace)
 
+    def catch_up(self) -> None:
+        """Take note that somebody else has moved the simulation, or changed it."""
+        self.twin, self.reversed = None, False
+        self._contact_time = self.sim.rule.contact_time
+        self._jump(forget=True)
+
     def _change(self, count: int | None = None) -> None:
         """Take note that the motion goes another way from now on, after so many collisions."""
         self._history.turn(self._count if count is None else count)

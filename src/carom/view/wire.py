@@ -47,6 +47,12 @@ METERS = (
     *("speed", "reached", "momentum_x", "momentum_y", "momentum_z"),
     *("temperature", "missed", "overlap"),
 )
+#: Numbers of each frame of a replay (`carom.view.reel`), by the names of `METERS`.
+REEL_COLUMNS = (
+    *("t", "gravity_x", "gravity_y", "gravity_z", "kinetic", "potential", "dissipated", "drift"),
+    *("collisions", "wall_collisions", "momentum_x", "momentum_y", "momentum_z", "temperature"),
+)
+REEL_FORMAT = 1
 SCENE_HEADER = struct.Struct("<" + "".join(letter for _, letter in HEADER))
 FRAME_HEADER = struct.Struct(SCENE_HEADER.format + "d" * len(METERS))
 #: Bytes of one sphere in a frame: x and v as three floats each, and a count.
@@ -201,6 +207,8 @@ def javascript() -> str:
         "SCENE_HEADER_BYTES": SCENE_HEADER.size,
         "FRAME_HEADER_BYTES": FRAME_HEADER.size,
         "SPHERE_BYTES": SPHERE_BYTES,
+        "REEL_FORMAT": REEL_FORMAT,
+        "REEL_COLUMNS": list(REEL_COLUMNS),
     }
     lines = [
         "// Made by carom/view/wire.py, which explains it; a test compares the two.",

@@ -20,7 +20,7 @@ test("no key has two meanings, and each can be found, printed and quoted", () =>
   assert.equal(new Set(all).size, all.length);
   for (const row of KEYS) for (const key of row.keys) assert.equal(rowOf(key), row);
   assert.equal(rowOf("N").action, "step");
-  assert.equal(rowOf("q"), undefined);
+  assert.equal(rowOf("z"), undefined);
   assert.equal(printed(" "), "space");
   assert.equal(printed("r"), "R");
   assert.equal(titleOf("restart"), "Restart (R)");

@@ -40,16 +40,23 @@ export function takeToken() {
  *   | {kind: "frame", frame: F, moving?: boolean}} Message
  */
 
+const SERVER = {
+  call: () => new WebSocket(`ws://${location.host}${SOCKET_PATH}`),
+  lost: "The simulation has ended. Waiting for it to return …",
+};
+
 /** @template {{playing: boolean, twin?: boolean}} [F=import("./protocol.js").Keyframe] */
 export class Connection {
   /**
    * @param {string} token @param {Listener<F>} listener
    * @param {(buffer: ArrayBuffer) => Message<F>} read what binary messages mean
+   * @param {{call: () => WebSocket, lost: string}} line how to call, and what to say when it is cut
    */
-  constructor(token, listener, read = /** @type {any} */ (decode)) {
+  constructor(token, listener, read = /** @type {any} */ (decode), line = SERVER) {
     this.token = token;
     this.listener = listener;
     this.read = read;
+    this.line = line;
     this.failed = 0; // calls in a row
     this.answered = false; // the server has said something on this line
     this.silence = 0; // milliseconds of drawing since something came last
@@ -67,7 +74,7 @@ export class Connection {
   }
 
   call() {
-    const socket = new WebSocket(`ws://${location.host}${SOCKET_PATH}`);
+    const socket = this.line.call();
     socket.binaryType = "arraybuffer";
     socket.onopen = () => {
       socket.send(say.hello(this.token));
@@ -140,7 +147,7 @@ export class Connection {
     }
     this.listener.state(
       "waiting",
-      reason ? `Not connected: ${reason}.` : "The simulation has ended. Waiting for it to return …",
+      reason ? `Not connected: ${reason}.` : this.line.lost,
     );
     this.#wait(() => this.call(), PATIENCE[Math.min(this.failed, PATIENCE.length - 1)]);
     this.failed++;

@@ -1,7 +1,7 @@
 /** The sheet of keys, mouse and touch. */
 import { Dialog } from "./dialog.js";
 import { element } from "./dom.js";
-import { KEYS, printed } from "./keys.js";
+import { KEYS, offered, printed } from "./keys.js";
 
 /** What pointers do: name, mouse, touch. */
 const POINTING = [
@@ -13,12 +13,14 @@ const POINTING = [
 ];
 
 export class Help {
-  constructor() {
-    const groups = [...new Set(KEYS.map(({ group }) => group))];
+  /** @param {import("./keys.js").Mode} mode */
+  constructor(mode) {
+    const rows = KEYS.filter(({ only }) => offered(only, mode));
+    const groups = [...new Set(rows.map(({ group }) => group))];
     const sheets = groups.map((group) =>
       sheet(
         group,
-        KEYS.filter((row) => row.group === group).map(({ keys, name }) => [
+        rows.filter((row) => row.group === group).map(({ keys, name }) => [
           name,
           ...keys.map((key) => element("kbd", {}, printed(key))),
         ]),

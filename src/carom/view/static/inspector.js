@@ -46,6 +46,7 @@ export class Inspector {
     this.trail = this.#button("Trail", "Trail of the selected sphere (T)", () => hands.toggle("trail"));
     const remove = this.#button("Delete", "Delete this sphere (Delete)", () => hands.remove());
     remove.classList.add("risky");
+    remove.hidden = !hands.changes;
     this.actions = make("div", { class: "sphere-actions" }, this.follow, this.trail, remove);
     this.radius = this.#field("Radius", (value) => (hands.next.radius = value));
     this.mass = this.#field("Mass", (value) => (hands.next.mass = value));

@@ -8,6 +8,9 @@
  * @property {string} name what it does
  * @property {string[]} [also] keys of neighbours, which do the same and are not printed
  * @property {string} action a name in `Actions`; "hands" and "camera" pass the event on
+ * @property {string} [only] pages that have it, all if left out
+ *
+ * @typedef {"live" | "widget" | "replay"} Mode
  *
  * @typedef {Record<string, () => void>} Actions
  */
@@ -19,12 +22,14 @@ export const KEYS = [
   { group: "Time", keys: ["b", "["], name: "Back one collision", action: "back" },
   { group: "Time", keys: ["r"], name: "Restart", action: "restart" },
   { group: "Time", keys: ["v"], name: "Reverse time", action: "reverse" },
+  { group: "Time", keys: ["e"], name: "On to the next frame", action: "later", only: "replay" },
+  { group: "Time", keys: ["q"], name: "Back one frame", action: "earlier", only: "replay" },
   { group: "Time", keys: [","], name: "Slower", action: "slower" },
   { group: "Time", keys: ["."], name: "Faster", action: "faster" },
   { group: "Time", keys: ["1"], name: "Normal speed", action: "normal" },
   { group: "Spheres", keys: ["j"], name: "Next ball; with shift, previous", action: "hands" },
-  { group: "Spheres", keys: ["a"], name: "Add a ball", action: "hands" },
-  { group: "Spheres", keys: ["delete"], also: ["backspace"], name: "Delete the selected ball", action: "hands" },
+  { group: "Spheres", keys: ["a"], name: "Add a ball", action: "hands", only: "live widget" },
+  { group: "Spheres", keys: ["delete"], also: ["backspace"], name: "Delete the selected ball", action: "hands", only: "live widget" },
   { group: "Spheres", keys: ["d"], name: "Velocity arrows", action: "hands" },
   { group: "Spheres", keys: ["t"], name: "Trail of the selected ball", action: "hands" },
   { group: "Spheres", keys: ["o"], name: "Follow the selected ball", action: "hands" },
@@ -34,12 +39,13 @@ export const KEYS = [
   { group: "View", keys: ["+"], also: ["="], name: "Closer", action: "camera" },
   { group: "View", keys: ["-"], also: ["_"], name: "Farther", action: "camera" },
   { group: "View", keys: ["f"], also: ["home"], name: "Show everything", action: "fit" },
-  { group: "View", keys: ["x"], name: "Exact against ticks", action: "compare" },
+  { group: "View", keys: ["x"], name: "Exact against ticks", action: "compare", only: "live widget" },
   { group: "View", keys: ["m"], name: "Full screen", action: "fullscreen" },
-  { group: "Page", keys: ["g"], name: "Choose a scene", action: "gallery" },
+  { group: "Page", keys: ["g"], name: "Choose a scene", action: "gallery", only: "live" },
   { group: "Page", keys: ["p"], name: "Numbers and settings", action: "panel" },
-  { group: "Page", keys: ["s"], name: "Change a setting", action: "settings" },
+  { group: "Page", keys: ["s"], name: "Change a setting", action: "settings", only: "live widget" },
   { group: "Page", keys: ["l"], name: "Share", action: "share" },
+  { group: "Page", keys: ["y"], name: "Save the last minute as a replay", action: "keep", only: "live" },
   { group: "Page", keys: ["k"], name: "Dark or light", action: "theme" },
   { group: "Page", keys: ["?"], name: "Help", action: "help" },
   { group: "Page", keys: ["escape"], name: "Unselect, or leave", action: "hands" },
@@ -61,6 +67,9 @@ export const printed = (key) => PRINTED[key] ?? key.toUpperCase();
 
 /** The row of a key, if it has one. @param {string} key @returns {Row | undefined} */
 export const rowOf = (key) => KEYS.find(({ keys, also = [] }) => [...keys, ...also].includes(key.toLowerCase()));
+
+/** Does a page have what is only for some? @param {string | undefined} only @param {string} mode */
+export const offered = (only, mode) => only === undefined || only.split(" ").includes(mode);
 
 /** "Restart (R)" for the action `restart`. @param {string} action @param {string} [name] */
 export function titleOf(action, name) {
@@ -87,11 +96,12 @@ export function ownKey({ tag, type, role }, key) {
 
 /**
  * Listen for keys.
+ * @param {Mode} mode
  * @param {Actions} actions
  * @param {(event: KeyboardEvent) => boolean} hands what the tools do with a key; true if anything
  * @param {(event: KeyboardEvent) => boolean} camera the same for the camera
  */
-export function listen(actions, hands, camera) {
+export function listen(mode, actions, hands, camera) {
   let pointing = false; // the focus came by mouse or finger: space still means pause
   addEventListener("pointerdown", () => (pointing = true), true);
   addEventListener("keydown", (event) => {
@@ -114,7 +124,7 @@ export function listen(actions, hands, camera) {
       if (own) focus.blur();
     }
     const row = rowOf(key);
-    if (row === undefined) return;
+    if (row === undefined || !offered(row.only, mode)) return;
     if (row.action === "camera") camera(event);
     else if (row.action !== "hands") actions[row.action]();
     else if (!hands(event)) {

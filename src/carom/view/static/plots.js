@@ -24,8 +24,9 @@ const AXES = ["x", "y", "z"];
  */
 
 export class Plots {
-  /** @param {HTMLElement} container */
-  constructor(container) {
+  /** @param {HTMLElement} container @param {boolean} [pressed] whether pressures will be told */
+  constructor(container, pressed = true) {
+    this.pressed = pressed;
     this.container = container;
     this.speeds = new Speeds();
     this.past = new Trace(8);
@@ -54,7 +55,7 @@ export class Plots {
     this.scene = scene;
     this.speeds.setScene(scene);
     this.enskog = enskog(scene);
-    this.parts.pressure.details.hidden = scene.about.walls.length === 0;
+    this.parts.pressure.details.hidden = !this.pressed || scene.about.walls.length === 0;
     if (fresh) this.clear();
     this.pressure = null;
   }

@@ -10,6 +10,7 @@
  * @property {Float32Array} mass infinite where fixed
  * @property {Uint32Array} color 0xRRGGBB
  * @property {Uint32Array} species
+ * @property {Uint8Array} bytes the message as it came
  *
  * @typedef {"own" | "energy" | "speed" | "species" | "collisions"} ColorMode
  *
@@ -195,6 +196,7 @@ function decodeScene(buffer, view) {
     mass: new Float32Array(buffer, start + 4 * n, n),
     color: new Uint32Array(buffer, start + 8 * n, n),
     species: new Uint32Array(buffer, start + 12 * n, n),
+    bytes: new Uint8Array(buffer),
   };
 }
 

@@ -2,13 +2,14 @@
 import { copyText } from "./clipboard.js";
 import { Dialog } from "./dialog.js";
 import { element } from "./dom.js";
+import { saveFile } from "./file.js";
 import { formatLink } from "./link.js";
 import { toast } from "./toast.js";
 
 /**
  * @typedef {object} Needs
  * @property {() => Promise<Blob>} picture
- * @property {() => void} askSource
+ * @property {(() => void) | null} askSource null where there is no program to ask
  * @property {string} token
  */
 
@@ -30,6 +31,7 @@ export class Share {
     const left = element("div", { class: "picture" }, this.preview, save);
     const right = element("div", { class: "texts" }, this.link.place, this.command.place);
     const top = element("div", { class: "share" }, left, right);
+    if (needs.askSource === null) for (const { place } of [this.command, this.python, this.toml]) place.hidden = true;
     this.dialog = new Dialog("share", "Share", top, this.python.place, this.toml.place);
   }
 
@@ -41,7 +43,7 @@ export class Share {
     this.link.text.value = formatLink(location.origin + location.pathname, this.needs.token, origin);
     this.preview.width = innerWidth;
     this.preview.height = innerHeight;
-    this.needs.askSource();
+    this.needs.askSource?.();
     this.dialog.open();
     void this.#draw();
   }
@@ -66,12 +68,7 @@ export class Share {
 
   async #save() {
     this.blob ??= await this.needs.picture();
-    const address = URL.createObjectURL(this.blob);
-    const name = this.title.toLowerCase().replace(/[^\p{L}\p{N}]+/gu, "-").replace(/^-|-$/g, "");
-    const link = element("a", { href: address, download: `${name || "carom"}.png` });
-    link.click();
-    // The browser has begun to read it once the click was handled.
-    setTimeout(() => URL.revokeObjectURL(address), 10_000);
+    saveFile(this.blob, this.title, "png");
   }
 }
 

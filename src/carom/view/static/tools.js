@@ -33,13 +33,15 @@ export class Hands {
    * @param {(message: string) => void} parts.send to the server
    * @param {(sentence: string) => void} parts.toast tells people something
    * @param {() => void} [parts.fit] shows everything
+   * @param {boolean} [parts.changes] whether hands can change the motion, or only look
    */
-  constructor({ canvas, camera, send, toast, fit = () => {} }) {
+  constructor({ canvas, camera, send, toast, fit = () => {}, changes = true }) {
     this.canvas = canvas;
     this.camera = camera;
     this.send = send;
     this.toast = toast;
     this.fit = fit;
+    this.changes = changes;
     /** @type {Scene | null} */ this.scene = null;
     /** @type {Side[]} */ this.sides = [];
     /** @type {number | null} */ this.selected = null;
@@ -128,7 +130,7 @@ export class Hands {
     const [side] = this.sides;
     // Beside ticks nothing is changed: both sides began alike.
     const alone = this.sides.length === 1;
-    const stands = alone && !side.second.playing && side.t === side.second.t;
+    const stands = this.changes && alone && !side.second.playing && side.t === side.second.t;
     const free = this.scene !== null && Number.isFinite(this.scene.mass[i]);
     const sphere = stands && free && this.mode === "turn" ? this.stateOf(i, 0) : null;
     const radius = this.scene?.radius[i] ?? 0;
@@ -202,6 +204,7 @@ export class Hands {
   }
 
   #startAdding() {
+    if (!this.changes) return;
     this.mode = "add";
     this.canvas.dataset.mode = "add";
     if (!this.told) this.toast("Press where the ball should be, drag to give it a velocity, let go.");
@@ -228,7 +231,7 @@ export class Hands {
 
   /** Take the selected sphere away. */
   remove() {
-    if (this.selected === null) return;
+    if (this.selected === null || !this.changes) return;
     this.send(say.remove(this.selected));
     this.select(null);
   }

@@ -1,0 +1,117 @@
+#include "crowd.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace carom::raster {
+
+namespace {
+
+constexpr int kMost = 24;  // cells along an axis
+// Shares of the light from the sky, the ground, and the four sides.
+constexpr float kAbove = 0.4f, kBelow = 0.08f, kSide = 0.13f;
+constexpr float kGentle = 0.7f;  // power of the light, for its many reflections
+constexpr float kLeak = 0.55f;   // of what hides light; the rest finds its way round
+constexpr double kPi = 3.14159265358979323846;
+
+}  // namespace
+
+Crowd::Crowd(const Vec3& low, const Vec3& high, double cell, const Vec3& up) {
+    const double l[3] = {low.x, low.y, low.z}, h[3] = {high.x, high.y, high.z};
+    const double u[3] = {up.x, up.y, up.z};
+    axis_ = 0;
+    for (int k = 0; k < 3; ++k) {
+        low_[k] = l[k];
+        size_[k] = std::max(h[k] - l[k], 1e-9);
+        cells_[k] = int(std::clamp(std::round(size_[k] / cell), 2.0, double(kMost)));
+        if (std::abs(u[k]) > std::abs(u[axis_])) axis_ = k;
+    }
+    upwards_ = u[axis_] > 0;
+    const size_t all = size_t(cells_[0]) * cells_[1] * cells_[2];
+    hidden_.resize(all), light_.resize(all), passed_.resize(all);
+}
+
+void Crowd::fill(const std::vector<Vec3>& position, const std::vector<double>& radius, size_t n) {
+    spread(position, radius, n);
+    std::fill(light_.begin(), light_.end(), 0.0f);
+    for (int k = 0; k < 3; ++k) {
+        const float step = kLeak * float(size_[k]) / float(cells_[k]);
+        for (size_t c = 0; c < hidden_.size(); ++c)
+            passed_[c] = std::exp(-0.5f * step * hidden_[c]);  // half a cell
+        sweep(k, true, k != axis_ ? kSide : upwards_ ? kBelow : kAbove);
+        sweep(k, false, k != axis_ ? kSide : upwards_ ? kAbove : kBelow);
+    }
+    // The best-lit place counts as fully lit, and what is near it too.
+    const float most = std::max(*std::max_element(light_.begin(), light_.end()), 1e-9f);
+    for (float& light : light_) light = std::min(1.0f, 1.15f * std::pow(light / most, kGentle));
+}
+
+void Crowd::spread(const std::vector<Vec3>& position, const std::vector<double>& radius, size_t n) {
+    std::fill(hidden_.begin(), hidden_.end(), 0.0f);
+    double per[3];
+    for (int k = 0; k < 3; ++k) per[k] = cells_[k] / size_[k];
+    for (size_t i = 0; i < n; ++i) {
+        const double x[3] = {position[i].x, position[i].y, position[i].z};
+        const double area = kPi * radius[i] * radius[i] * per[0] * per[1] * per[2];
+        int cell[3];
+        double far[3];
+        for (int k = 0; k < 3; ++k) {
+            const double at = std::clamp((x[k] - low_[k]) * per[k] - 0.5, 0.0, cells_[k] - 1.001);
+            cell[k] = int(at);
+            far[k] = at - cell[k];
+        }
+        for (int bits = 0; bits < 8; ++bits) {  // shared out among the eight cells around it
+            double part = area;
+            size_t at = 0;
+            for (int k = 2; k >= 0; --k) {
+                const int next = bits >> k & 1;
+                part *= next ? far[k] : 1 - far[k];
+                at = at * cells_[k] + cell[k] + next;
+            }
+            hidden_[at] += float(part);
+        }
+    }
+}
+
+void Crowd::sweep(int axis, bool forward, float share) {
+    const int stride[3] = {1, cells_[0], cells_[0] * cells_[1]};
+    const int a = (axis + 1) % 3, b = (axis + 2) % 3, n = cells_[axis];
+    for (int i = 0; i < cells_[a]; ++i) {
+        for (int j = 0; j < cells_[b]; ++j) {
+            float through = share;
+            for (int k = 0; k < n; ++k) {
+                const int c =
+                    i * stride[a] + j * stride[b] + (forward ? k : n - 1 - k) * stride[axis];
+                through *= passed_[c];
+                light_[c] += through;
+                through *= passed_[c];
+            }
+        }
+    }
+}
+
+float Crowd::left(const Vec3& place) const {
+    const double x[3] = {place.x, place.y, place.z};
+    int cell[3];
+    float far[3];
+    for (int k = 0; k < 3; ++k) {
+        const double at = (x[k] - low_[k]) * cells_[k] / size_[k] - 0.5;
+        const double inside = std::clamp(at, 0.0, cells_[k] - 1.001);
+        cell[k] = int(inside);
+        far[k] = float(inside - cell[k]);
+    }
+    float sum = 0;
+    for (int bits = 0; bits < 8; ++bits) {
+        float part = 1;
+        size_t at = 0;
+        for (int k = 2; k >= 0; --k) {
+            const int next = bits >> k & 1;
+            part *= next ? far[k] : 1 - far[k];
+            at = at * cells_[k] + cell[k] + next;
+        }
+        sum += part * light_[at];
+    }
+    return sum;
+}
+
+}  // namespace carom::raster

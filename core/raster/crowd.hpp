@@ -1,0 +1,34 @@
+// How much light is left inside a crowd of spheres: a coarse grid of what they hide, swept from
+// six sides. It makes the middle of a dense fluid darker, smoothly, as no single shadow could.
+// The same as the page's crowd.js.
+#pragma once
+
+#include <vector>
+
+#include "picture.hpp"
+
+namespace carom::raster {
+
+class Crowd {
+public:
+    // low, high: corners of the room; cell: wanted length of a cell's side; up: where the sky is.
+    Crowd(const Vec3& low, const Vec3& high, double cell, const Vec3& up);
+
+    // With the first n spheres.
+    void fill(const std::vector<Vec3>& position, const std::vector<double>& radius, size_t n);
+
+    // 0 to 1, between the cells in proportion.
+    float left(const Vec3& place) const;
+
+private:
+    void spread(const std::vector<Vec3>& position, const std::vector<double>& radius, size_t n);
+    void sweep(int axis, bool forward, float share);
+
+    double low_[3], size_[3];
+    int cells_[3];
+    int axis_;
+    bool upwards_;
+    std::vector<float> hidden_, light_, passed_;
+};
+
+}  // namespace carom::raster

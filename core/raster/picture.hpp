@@ -1,0 +1,135 @@
+// What a picture is made of: an eye, light, walls, spheres. Everything is in eye space unless it
+// says otherwise: x to the right, y up, z ahead.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "../vec3.hpp"
+
+namespace carom::raster {
+
+struct F3 {
+    float x = 0, y = 0, z = 0;
+};
+
+inline F3 operator+(F3 a, F3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline F3 operator-(F3 a, F3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline F3 operator*(F3 a, float s) { return {a.x * s, a.y * s, a.z * s}; }
+inline F3 operator*(F3 a, F3 b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+inline float dot(F3 a, F3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline F3 mix(F3 a, F3 b, float s) { return a + (b - a) * s; }
+
+inline float clamp(float x, float low = 0, float high = 1) {
+    x = x > low ? x : low;
+    return x < high ? x : high;
+}
+// The larger of x and 0, without a choice: that would keep compilers from making vectors of loops.
+inline float positive(float x) { return 0.5f * (x + std::abs(x)); }
+inline float smoothstep(float from, float to, float x) {
+    const float s = clamp((x - from) / (to - from));
+    return s * s * (3 - 2 * s);
+}
+
+// Where one looks from. The ray through pixel (i, j) is ((i + 0.5 - width/2) pixel,
+// (height/2 - j - 0.5) pixel, 1).
+struct View {
+    Vec3 eye, right, up, forward;  // in the world
+    double pixel = 1;              // width of a pixel at distance 1
+    int width = 1, height = 1;
+    int samples = 1;  // along each side of a pixel, 1 or 2
+
+    Vec3 turned(const Vec3& a) const {
+        return {carom::dot(right, a), carom::dot(up, a), carom::dot(forward, a)};
+    }
+    F3 direction(const Vec3& a) const {
+        const Vec3 t = turned(a);
+        return {float(t.x), float(t.y), float(t.z)};
+    }
+    F3 place(const Vec3& a) const { return direction(a - eye); }
+    float ray_x(float i) const { return (i + 0.5f - 0.5f * float(width)) * float(pixel); }
+    float ray_y(float j) const { return (0.5f * float(height) - j - 0.5f) * float(pixel); }
+};
+
+// Light, colours (parts from 0 to 1), and what is drawn how.
+struct Look {
+    Vec3 lamp, up;                        // unit vectors in the world
+    F3 key, sky, ground;                  // amounts of light
+    F3 back, line, shell, surface, tint;  // colours, see the page's themes
+    float fog_from = 0, fog_per_length = 0, fog_most = 0;
+    float line_width = 1.25f;  // pixels
+    bool wire = false, shadows = true;
+    float soft = 0;        // least radius of a half-shadow, a length
+    float deepest = 1;     // a length: no half-shadow is wider than its share
+    float shadowed = 1;    // how dark shadows may be
+    Vec3 low, high;        // of the room, in the world
+    float crowd_cell = 0;  // of the grid of what spheres hide; 0: no crowd
+};
+
+// A flat wall, in the world: a parallelogram spanned by u and v (unit vectors times sides).
+struct Face {
+    Vec3 corner, u, v, normal;
+    double side_u, side_v;
+    double grid_u[2], grid_v[2];  // steps of the grid at the corner, and along the whole side
+    double fill, grid_line;       // how opaque
+    double fade;                  // above 0: a disc whose rim fades
+    double shade, contact;        // darkness of shadows, and of spots under spheres; 0: none
+};
+
+// A line, in the world.
+struct Edge {
+    Vec3 from, to;
+    double alpha, dash;  // dash: length with its gap, 0 for an unbroken line
+};
+
+struct Room {
+    std::vector<Face> faces;
+    std::vector<Edge> edges;
+    std::vector<double> shells;  // radii of spherical walls about the origin
+};
+
+// A sphere as it is drawn.
+struct Ball {
+    F3 center;
+    float radius = 1;
+    F3 skin;         // squared colour: the share of light it gives back
+    float left = 1;  // light left for it in the crowd
+    F3 left_slope;   // and its change per unit of the normal
+    F3 color;
+};
+
+// Three numbers per pixel, from 0 to 1, row by row.
+struct Frame {
+    int width = 0, height = 0;
+    std::vector<float> rgb;
+
+    void resize(int w, int h) {
+        width = w, height = h;
+        rgb.resize(size_t(3) * w * h);
+    }
+    float* row(int j) { return &rgb[size_t(3) * width * j]; }
+    const float* row(int j) const { return &rgb[size_t(3) * width * j]; }
+};
+
+inline void blend(float* pixel, F3 color, float alpha) {
+    pixel[0] += (color.x - pixel[0]) * alpha;
+    pixel[1] += (color.y - pixel[1]) * alpha;
+    pixel[2] += (color.z - pixel[2]) * alpha;
+}
+
+// First and last pixel that something covers; empty if first > last.
+struct Span {
+    int first = 0, last = -1;
+};
+inline Span span(double from, double to, int size) {
+    if (!(from < size) || !(to >= 0)) return {};
+    return {from > 0 ? int(from) : 0, to < size - 1 ? int(to) + 1 : size - 1};
+}
+struct Bounds {
+    Span x, y;
+};
+// The pixels around a sphere's outline; everything where it reaches beside or behind the eye.
+Bounds around(const View& view, F3 center, float radius, float more);
+
+}  // namespace carom::raster

@@ -1,0 +1,45 @@
+// Pictures of spheres without a graphics unit: the page's picture, traced on the processor.
+#pragma once
+
+#include <mutex>
+#include <utility>
+
+#include "crowd.hpp"
+#include "picture.hpp"
+#include "shading.hpp"
+#include "visibility.hpp"
+#include "walls.hpp"
+
+namespace carom::raster {
+
+// Draws one picture after another of a room, from one place. What stays the same is drawn once.
+class Raster {
+public:
+    Raster(const View& view, const Look& look, Room room);
+
+    // position: in the world; color: 0xRRGGBB; bytes: height × width × 3. The first `own` spheres
+    // fill the room, all others are images of them. One thread at a time, others wait.
+    void draw(const std::vector<Vec3>& position, const std::vector<double>& radius,
+              const std::vector<uint32_t>& color, size_t own, uint8_t* bytes);
+
+    const View& view() const { return view_; }
+
+private:
+    void place(const std::vector<Vec3>& position, const std::vector<double>& radius,
+               const std::vector<uint32_t>& color, size_t own);
+
+    View view_;
+    Look look_;
+    Room room_;
+    std::vector<Wall> walls_;
+    Shading shading_;
+    Visibility seen_;
+    Casters casters_;
+    std::vector<std::pair<float, int>> order_;  // spheres by distance
+    std::vector<Ball> balls_;                   // from near to far
+    Frame still_;                               // what lies behind all spheres
+    Frame frame_;
+    std::mutex busy_;
+};
+
+}  // namespace carom::raster

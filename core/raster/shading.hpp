@@ -1,0 +1,30 @@
+// The light that comes from a place on a sphere to the eye. The same as the page's light.js.
+#pragma once
+
+#include "shadow.hpp"
+#include "visibility.hpp"
+
+namespace carom::raster {
+
+class Shading {
+public:
+    Shading(const View& view, const Look& look);
+
+    // Paints what is seen of the spheres over what is in the frame.
+    void paint(const Visibility& seen, const std::vector<Ball>& balls, const Casters& casters,
+               Frame& frame) const;
+
+private:
+    struct Batch;
+    void collect(const Visibility& seen, int row, const std::vector<Ball>& balls,
+                 const Casters& casters, Frame& frame) const;
+    void light(Batch& batch, const std::vector<Ball>& balls, const Casters& casters,
+               float* row) const;
+    void shadow(Batch& batch, const std::vector<Ball>& balls, const Casters& casters) const;
+
+    View view_;
+    Look look_;
+    F3 lamp_, up_;
+};
+
+}  // namespace carom::raster

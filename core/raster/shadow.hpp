@@ -1,0 +1,59 @@
+// Shadows of spheres on one another, without a map: who stands between a sphere and the lamp is
+// found once per sphere, and each place on it then asks those few.
+#pragma once
+
+#include <vector>
+
+#include "picture.hpp"
+
+namespace carom::raster {
+
+constexpr float kLamp = 0.075f;     // the lamp's radius over its distance: half-shadows widen so
+constexpr float kFaintest = 0.03f;  // shadows that hide less of the lamp are left out
+
+// Radius of the half-shadow at a distance behind what casts it.
+inline float half_shadow(const Look& look, float gap) {
+    return look.soft + kLamp * (gap < look.deepest ? gap : look.deepest);
+}
+
+// The part of the lamp that a disc of radius r hides from a place at a distance s from the line
+// through its middle to the lamp; the lamp's disc is drawn there with radius `wide`.
+inline float hidden(float s, float r, float wide) {
+    const float inner = r > wide ? r - wide : wide - r;
+    const float most = r < wide ? r * r / (wide * wide) : 1.0f;
+    const float share = clamp((s - inner) / (r + wide - inner));
+    return most * (1 - share * share * (3 - 2 * share));
+}
+
+class Casters {
+public:
+    // lamp: unit vector towards it. Asks only for balls that are seen.
+    void find(const std::vector<Ball>& balls, const std::vector<uint8_t>& seen, const Look& look,
+              F3 lamp);
+    void clear() { first_.clear(); }
+
+    bool any() const { return !first_.empty(); }
+    // Those whose shadows change within the ball.
+    const int* begin(int ball) const { return &all_[0] + first_[ball]; }
+    const int* end(int ball) const { return &all_[0] + first_[ball + 1]; }
+    // What the others leave of the lamp, for the whole ball.
+    float left(int ball) const { return left_[ball]; }
+
+private:
+    void sort_into_cells(const std::vector<Ball>& balls, const Look& look);
+    float ask(int i, const std::vector<Ball>& balls, const Look& look);
+
+    struct Place {
+        float a, b, height;  // across the light, and towards the lamp
+    };
+    std::vector<Place> places_;
+    std::vector<int> order_;  // from the lamp on
+    float low_[2] = {}, per_[2] = {};
+    int cells_ = 1;                     // along each axis
+    std::vector<int> starts_, inside_;  // spheres by cell, from the lamp on
+    std::vector<int> asked_;            // by whom last
+    std::vector<int> first_, all_;
+    std::vector<float> left_;
+};
+
+}  // namespace carom::raster

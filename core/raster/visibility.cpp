@@ -1,0 +1,110 @@
+#include "visibility.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace carom::raster {
+
+namespace {
+
+constexpr float kFar = std::numeric_limits<float>::infinity();
+
+// Where the outline of a sphere lies along one axis of the picture: the two rays at distance 1
+// that touch it. a: its place along that axis, z: ahead; needs z > radius.
+void outline(float a, float z, float radius, float& low, float& high) {
+    const float bottom = 1 / ((z - radius) * (z + radius));
+    const float root = radius * std::sqrt(std::max(a * a + (z - radius) * (z + radius), 0.0f));
+    low = (a * z - root) * bottom;
+    high = (a * z + root) * bottom;
+}
+
+}  // namespace
+
+Bounds around(const View& view, F3 c, float radius, float more) {
+    const Bounds all{{0, view.width - 1}, {0, view.height - 1}};
+    if (c.z <= 1.05f * radius) return all;
+    float left, right, bottom, top;
+    outline(c.x, c.z, radius, left, right);
+    outline(c.y, c.z, radius, bottom, top);
+    const float per = 1 / float(view.pixel);
+    const float x = 0.5f * float(view.width) - 0.5f, y = 0.5f * float(view.height) - 0.5f;
+    return {span(left * per + x - more, right * per + x + more, view.width),
+            span(y - top * per - more, y - bottom * per + more, view.height)};
+}
+
+void Visibility::resize(const View& view) {
+    view_ = view;
+    view_.width *= view.samples;
+    view_.height *= view.samples;
+    view_.pixel /= view.samples;
+    stride_ = (view_.width + kLanes - 1) / kLanes * kLanes;
+    depths_.resize(size_t(stride_) * view_.height);
+    ids_.resize(depths_.size());
+}
+
+void Visibility::clear() {
+    std::fill(depths_.begin(), depths_.end(), kFar);
+    std::fill(ids_.begin(), ids_.end(), kNone);
+}
+
+// Whether all samples around something see what is nearer. distance: that of its nearest point.
+bool Visibility::is_hidden(const Bounds& bounds, float distance) const {
+    const auto least = [](float a, float b) {  // distance of an interval from 0
+        return a * b <= 0 ? 0 : std::min(std::abs(a), std::abs(b));
+    };
+    const float x = least(view_.ray_x(float(bounds.x.first)), view_.ray_x(float(bounds.x.last)));
+    const float y = least(view_.ray_y(float(bounds.y.first)), view_.ray_y(float(bounds.y.last)));
+    const float nearest = distance * std::sqrt(1 + x * x + y * y);  // a depth: distance times |ray|
+    for (int row = bounds.y.first; row <= bounds.y.last; ++row) {
+        const float* const depth = depths(row);
+        int open = 0;
+        for (int k = bounds.x.first; k <= bounds.x.last; ++k) open |= int(depth[k] > nearest);
+        if (open) return false;
+    }
+    return true;
+}
+
+// With the ray d = (x, y, 1) and its difference e to the ray through the centre c, the ray meets
+// the sphere where t d² = d·c - sqrt(d² r² - |e × c|²). That root has no small difference of
+// large numbers in it, so single precision will do. All is divided by c.z.
+void Visibility::add(int index, F3 c, float radius) {
+    if (c.z <= 0.02f * radius || dot(c, c) <= 1.02f * radius * radius) return;
+    const float pixel = float(view_.pixel);
+    // At least a sample large, or small spheres would come and go.
+    const float r = std::max(radius / c.z, 0.6f * pixel), r2 = r * r;
+    const float x0 = c.x / c.z, y0 = c.y / c.z;
+    const Bounds bounds = around(view_, c, r * c.z, 0);
+    if (is_hidden(bounds, std::sqrt(dot(c, c)) - r * c.z)) return;
+    const bool bounded = r < 0.95f;  // else its outline need not be an ellipse
+    const float middle = 0.5f * float(view_.width) - 0.5f;
+    const float p2 = r2 - 1 - y0 * y0;
+    for (int row = bounds.y.first; row <= bounds.y.last; ++row) {
+        const float y = view_.ray_y(float(row)), dy = y - y0;
+        const float p1 = r2 * x0 + x0 * y0 * dy;
+        const float p0 = r2 * (1 + y * y + x0 * x0) - dy * dy * (1 + x0 * x0);
+        Span s = bounds.x;
+        if (bounded) {
+            const float inside = p1 * p1 - p2 * p0;
+            if (inside < 0) continue;
+            const float root = std::sqrt(inside);
+            s = span(((p1 - root) / -p2 + x0) / pixel + middle,
+                     ((p1 + root) / -p2 + x0) / pixel + middle, view_.width);
+        }
+        const int first = s.first / kLanes * kLanes;
+        const int count = (s.last - first + kLanes) / kLanes * kLanes;
+        float* __restrict const depth = &depths_[size_t(row) * stride_ + first];
+        int* __restrict const id = &ids_[size_t(row) * stride_ + first];
+        const float ahead = 1 + x0 * x0 + y * y0, begin = (float(first) - middle) * pixel - x0;
+        for (int k = 0; k < count; ++k) {
+            const float dx = begin + float(k) * pixel;
+            const float square = (p2 * dx + 2 * p1) * dx + p0;
+            const float t = c.z * (ahead + x0 * dx - std::sqrt(std::abs(square)));
+            // Bits and no choices, which would keep compilers from making vectors of the loop.
+            const int hit = -(int(square >= 0) & int(t > 0) & int(t < depth[k]));
+            id[k] = (index & hit) | (id[k] & ~hit);
+            depth[k] = hit ? t : depth[k];
+        }
+    }
+}
+
+}  // namespace carom::raster

@@ -1,0 +1,46 @@
+// The walls: flat ones with a fine grid and the shadows that fall on them, and lines.
+#pragma once
+
+#include "light_map.hpp"
+#include "shadow.hpp"
+#include "visibility.hpp"
+
+namespace carom::raster {
+
+// A flat wall as it is seen.
+class Wall {
+public:
+    Wall(const View& view, const Look& look, const Face& face);
+
+    // A breath of colour, lightest in the middle, and the grid.
+    void paint(Frame& frame) const;
+    // What spheres take away of its light, where it is seen.
+    void darken(const std::vector<Ball>& balls, const Visibility& seen, Frame& frame);
+
+private:
+    // Where a ray meets it.
+    struct Point {
+        float u, v;              // 0 to 1 along the sides
+        float cover, rim;        // is it there; how much of an endless plane has not faded
+        float slope_u, slope_v;  // change of u and v over a pixel
+    };
+    Point at(float x, float y) const;
+
+    void shadow(const Ball& ball, F3 lamp);
+    void spot(const Ball& ball);
+
+    View view_;
+    Look look_;
+    Face face_;
+    F3 corner_, u_, v_, normal_;
+    F3 along_u_, along_v_;  // u = along_u·d / normal·d for a ray d
+    float level_;           // normal · corner
+    Bounds bounds_;
+    LightMap shadows_, spots_;
+};
+
+// A line, where no sphere is before it.
+void draw(const View& view, const Look& look, const Edge& edge, const Visibility& seen,
+          Frame& frame);
+
+}  // namespace carom::raster

@@ -1,0 +1,176 @@
+"""Words in a picture: title, clock, and what the colours mean; drawn with Pillow."""
+
+import math
+import unicodedata
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from carom.color import SPECIES
+from carom.errors import InputError
+from carom.pictures.look import COLLISIONS, SPEEDS, along, parts, saturated
+from carom.pictures.painter import Pixels, Style
+from carom.state import Floats, State
+
+LEAST = 11.5  #: size of letters in pixels; smaller ones run together
+HUES = 5  #: rows of the energy scale: a sphere keeps its own hue
+#: The font that comes with Pillow has little more than ASCII.
+PLAIN = str.maketrans({"×": "x", "·": "-", "–": "-", "−": "-", "’": "'", "π": "pi", "ß": "ss"})
+
+
+def pillow() -> tuple[ModuleType, ModuleType, ModuleType]:
+    """Pillow's Image, ImageDraw and ImageFont.
+
+    Raises
+    ------
+    InputError
+        If it is not installed.
+    """
+    try:
+        from PIL import Image, ImageDraw, ImageFont
+    except ImportError as missing:
+        msg = (
+            "words in pictures, and GIF files, need Pillow: pip install carom[video], "
+            "or leave the words out with caption=False (--no-caption)"
+        )
+        raise InputError(msg) from missing
+    return Image, ImageDraw, ImageFont
+
+
+def short(value: float) -> str:
+    """Three digits; powers of ten where there would be many zeros."""
+    if value == 0 or 1e-3 <= abs(value) < 1e5:
+        return f"{float(f'{value:.3g}'):g}"
+    power = math.floor(math.log10(abs(value)))
+    return f"{value / 10.0**power:.3g}e{power}"
+
+
+@dataclass(frozen=True)
+class Legend:
+    """What colours mean: bars over a scale, or dots with words.
+
+    Attributes
+    ----------
+    bars : list of (K, 3) float64
+        Colours along each bar.
+    name : str
+        Of the quantity.
+    dots : list of (color, text)
+    """
+
+    bars: list[Floats]
+    name: str = ""
+    dots: tuple[tuple[Floats, str], ...] = ()
+
+    @classmethod
+    def of(cls, state: State, style: Style) -> "Legend":
+        """The legend of pictures that begin with a state."""
+        place = np.linspace(0, 1, 64)
+        if style.color == "energy":
+            all_ = list(dict.fromkeys(state.color[:4096].tolist()))
+            rows = min(HUES, len(all_))
+            some = [all_[k * len(all_) // rows] for k in range(rows)]
+            return cls([saturated(parts(own)[None], place) for own in some], "kinetic energy")
+        if style.color == "speed":
+            return cls([along(SPEEDS, place)], "speed")
+        if style.color == "collisions":
+            return cls([along(COLLISIONS, place)], "collisions so far")
+        if style.color == "species":
+            kinds, counts = np.unique(state.species, return_counts=True)
+            kept = list(zip(kinds.tolist(), counts.tolist(), strict=True))[: len(SPECIES)]
+            dots = (
+                (parts(SPECIES[kind % len(SPECIES)]), f"species {kind}: {many}")
+                for kind, many in kept
+            )
+            return cls([], dots=tuple(dots))
+        return cls([])
+
+
+class Caption:
+    """Writes into pictures of one style.
+
+    Parameters
+    ----------
+    title : str
+    legend : Legend
+    style : Style
+    step : float
+        Time between two pictures: the clock has as many decimals as tell them apart.
+    """
+
+    def __init__(self, title: str, legend: Legend, style: Style, step: float) -> None:
+        self._image, self._draw, font = pillow()
+        self._title = _plain(title)
+        self._legend = legend
+        # Small pictures need words that are larger in proportion.
+        self._unit = min(style.size[1], 1.2 * style.size[0]) / 720
+        self._unit *= max(1.0, (480 / style.size[1]) ** 0.5)
+        self._fonts = {
+            name: font.load_default(max(LEAST, size * self._unit))
+            for name, size in (("title", 25), ("clock", 22), ("legend", 17))
+        }
+        self._decimals = min(9, max(2, math.ceil(-math.log10(step) - 1e-9))) if step > 0 else 2
+        palette = style.palette
+        self._ink, self._back = _rgb(parts(palette.text)), _rgb(parts(palette.back))
+        self._faint = _rgb(parts(palette.line))
+
+    def write(self, pixels: Pixels, time: float, full: float) -> Pixels:
+        """Add the words of a moment; `full` is the end of the scale of colours."""
+        image = self._image.fromarray(pixels)
+        draw = self._draw.Draw(image)
+        width, height = image.size
+        edge = 28 * self._unit
+        self._text(draw, (edge, edge), self._title, "title", "lt", self._ink)
+        clock = f"time {time:.{self._decimals}f}"
+        self._text(draw, (width - edge, edge), clock, "clock", "rt", self._ink)
+        self._draw_legend(draw, edge, height - edge, full)
+        return np.asarray(image)
+
+    def _text(
+        self, draw: Any, place: tuple[float, float], text: str, name: str, anchor: str, ink: Any
+    ) -> None:
+        # A rim of the background's colour keeps words readable over spheres.
+        rim = max(1, round(1.5 * self._unit))
+        font = self._fonts[name]
+        draw.text(
+            place, text, ink, font, anchor, stroke_width=rim, stroke_fill=self._back
+        )  # fmt: skip
+
+    def _draw_legend(self, draw: Any, left: float, bottom: float, full: float) -> None:
+        unit, legend = self._unit, self._legend
+        line = 25 * unit
+        for k, (color, text) in enumerate(reversed(legend.dots)):
+            middle, r = bottom - (k + 0.5) * line, 7 * unit
+            spot = (left, middle - r, left + 2 * r, middle + r)
+            draw.ellipse(spot, _rgb(color), self._back, max(1, round(unit)))
+            self._text(draw, (left + 24 * unit, middle), text, "legend", "lm", self._ink)
+        if not legend.bars:
+            return
+        width = 250 * unit
+        self._text(draw, (left, bottom), "0", "legend", "ls", self._ink)
+        middle = left + width / 2
+        self._text(draw, (middle, bottom), legend.name, "legend", "ms", self._ink)
+        end = short(full) if legend.name.startswith("collisions") else f"{short(full)} +"
+        self._text(draw, (left + width, bottom), end, "legend", "rs", self._ink)
+        high = (15 if len(legend.bars) == 1 else 9) * unit
+        top = bottom - line - len(legend.bars) * high
+        for row, bar in enumerate(legend.bars):
+            upper, lower = round(top + row * high), round(top + (row + 1) * high) - 1
+            for k, color in enumerate(bar):
+                x = left + width * np.array([k, k + 1]) / len(bar)
+                draw.rectangle((round(x[0]), upper, round(x[1]) - 1, lower), _rgb(color))
+        frame = (round(left) - 1, round(top) - 1, round(left + width), lower + 1)
+        draw.rectangle(frame, None, self._faint, max(1, round(unit)))
+
+
+def _rgb(color: Floats) -> tuple[int, int, int]:
+    red, green, blue = (int(255 * part + 0.5) for part in color)
+    return red, green, blue
+
+
+def _plain(text: str) -> str:
+    """The same in letters that the font has."""
+    flat = unicodedata.normalize("NFKD", text.translate(PLAIN))
+    return flat.encode("ascii", "ignore").decode()

@@ -1,0 +1,175 @@
+"""Films: pictures one after another into an MP4 or GIF file, with PyAV."""
+
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+from types import ModuleType, TracebackType
+from typing import Any, Self
+
+import numpy as np
+
+from carom.errors import FileError, InputError
+from carom.pictures.caption import pillow
+from carom.pictures.painter import Pixels
+
+BLUR = {"draft": 28, "good": 18}  #: constant rate factor of H.264, by quality
+RATES = {"draft": 2_000_000, "good": 12_000_000}  #: bit/s where there is no H.264
+FASTEST = 240  #: pictures per second of an MP4
+FASTEST_GIF = 50  #: pictures per second: browsers slow down faster ones
+BT709 = 1  #: the colours of high-definition video (ITU-T H.273, table 2, 3 and 4)
+
+
+def pyav() -> ModuleType:
+    """PyAV.
+
+    Raises
+    ------
+    InputError
+        If it is not installed.
+    """
+    try:
+        import av
+    except ImportError as missing:
+        msg = "films need PyAV and Pillow: pip install carom[video]"
+        raise InputError(msg) from missing
+    return av
+
+
+def check(suffix: str, size: tuple[int, int], fps: float) -> None:
+    """Refuse sizes and rates that a kind of film cannot have.
+
+    Raises
+    ------
+    InputError
+        With what to take instead, or if a library is missing.
+    """
+    pyav()
+    if suffix == ".gif":
+        pillow()
+    kind, most = ("GIF", FASTEST_GIF) if suffix == ".gif" else ("film", FASTEST)
+    if fps > most:
+        msg = f"fps is {fps:g}; a {kind} shows {most} pictures per second at most"
+        raise InputError(msg)
+    if suffix != ".gif" and (size[0] % 2 or size[1] % 2):
+        even = f"{size[0] + size[0] % 2}x{size[1] + size[1] % 2}"
+        msg = f"an MP4 film cannot have the odd size {size[0]}x{size[1]}; take {even}"
+        raise InputError(msg)
+
+
+class Film:
+    """A file that grows picture by picture, and has its name when it is whole.
+
+    Ended by an error after some pictures, it holds these: nothing that was drawn is lost.
+
+    Parameters
+    ----------
+    path : Path
+        Ends in ``.mp4`` or ``.gif``.
+    size : (width, height)
+    fps : float
+    quality : {"draft", "good"}
+    gamut : callable
+        Gives pixels with all colours that will come, for the palette of a GIF.
+
+    Raises
+    ------
+    FileError
+        If the file cannot be written.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        size: tuple[int, int],
+        fps: float,
+        quality: str,
+        gamut: Callable[[], Pixels],
+    ) -> None:
+        self._path = path
+        self._part = path.with_name(path.name + ".part")
+        self._fps = fps
+        self._gif = path.suffix.lower() == ".gif"
+        self.frames = 0
+        last = str(round(100 / fps))  # hundredths of a second that the last picture stays
+        options = {"final_delay": last} if self._gif else {"movflags": "+faststart"}
+        kind = "gif" if self._gif else "mp4"
+        try:
+            self._file = pyav().open(str(self._part), "w", format=kind, options=options)
+        except OSError as error:
+            msg = f"cannot write {path}: {error.strerror}"
+            raise FileError(msg) from error
+        self._stream = self._gif_stream(size) if self._gif else self._mp4_stream(size, quality)
+        if self._gif:
+            image = pillow()[0].fromarray(gamut())
+            self._palette = image.quantize(256, dither=0)
+            colors = np.zeros((256, 4), np.uint8)
+            given = np.array(self._palette.getpalette(), np.uint8).reshape(-1, 3)
+            colors[:, 0] = 255  # opaque; then red, green, blue
+            colors[: len(given), 1:] = given
+            self._colors = colors
+
+    def _gif_stream(self, size: tuple[int, int]) -> Any:
+        stream: Any = self._file.add_stream("gif", rate=100)
+        stream.width, stream.height = size
+        stream.pix_fmt = "pal8"
+        stream.codec_context.time_base = Fraction(1, 100)
+        return stream
+
+    def _mp4_stream(self, size: tuple[int, int], quality: str) -> Any:
+        rate = Fraction(self._fps).limit_denominator(1001)
+        known: set[str] = pyav().codec.codecs_available
+        stream: Any
+        if "libx264" in known:
+            stream = self._file.add_stream("libx264", rate=rate)
+            stream.options = {"crf": str(BLUR[quality]), "preset": "fast"}
+        else:
+            name = next((n for n in ("libopenh264", "mpeg4") if n in known), "mpeg4")
+            stream = self._file.add_stream(name, rate=rate)
+            stream.bit_rate = RATES[quality]
+        stream.width, stream.height = size
+        stream.pix_fmt = "yuv420p"
+        context = stream.codec_context
+        context.colorspace = context.color_primaries = context.color_trc = BT709
+        return stream
+
+    def add(self, pixels: Pixels) -> None:
+        """Append a picture, (height, width, 3)."""
+        av = pyav()
+        frame: Any
+        if self._gif:
+            image = pillow()[0].fromarray(pixels).quantize(palette=self._palette, dither=0)
+            frame = av.VideoFrame.from_ndarray((np.asarray(image), self._colors), format="pal8")
+            # A GIF counts in hundredths of a second; whole ones stay nearest to the truth.
+            frame.pts, frame.time_base = round(100 * self.frames / self._fps), Fraction(1, 100)
+        else:
+            frame = av.VideoFrame.from_ndarray(pixels, format="rgb24")
+            frame = frame.reformat(format="yuv420p", dst_colorspace="ITU709")
+            frame.pts = self.frames
+        self.frames += 1
+        self._write(self._stream.encode(frame))
+
+    def _write(self, packets: Any) -> None:
+        try:
+            self._file.mux(packets)
+        except OSError as error:
+            msg = f"cannot write {self._path}: {error.strerror}"
+            raise FileError(msg) from error
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        try:
+            if self.frames:
+                self._write(self._stream.encode(None))
+        finally:
+            self._file.close()
+            if self.frames and not isinstance(error, FileError):
+                self._part.replace(self._path)
+            else:
+                self._part.unlink(missing_ok=True)

@@ -1,0 +1,169 @@
+"""Colours of pictures, the same as the page's: themes, scales, and what a sphere's colour says."""
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from carom.color import SPECIES, Colors
+from carom.state import Floats, State
+from carom.world import World
+
+Color = Literal["energy", "speed", "collisions", "own", "species"]
+Theme = Literal["dark", "light"]
+COLORS: tuple[Color, ...] = get_args(Color)
+
+#: Kinetic energy at which the paper's saturation KE/5 reaches 100 percent.
+PAPER_FULL = 500.0
+#: From slow to fast, and from few collisions to many.
+SPEEDS = (0x4059D6, 0x4C8FE6, 0x55BCCB, 0xB4D98A, 0xFFE65A)
+COLLISIONS = (0x5B2A86, 0x9C2F7F, 0xDB4F5F, 0xF98E4B, 0xFDE7A0)
+FEWEST = 5  #: collisions at the end of the scale, at least: one step must not look like all
+
+
+@dataclass(frozen=True)
+class Palette:
+    """Colours of a theme as 0xRRGGBB, amounts of light, and how opaque walls are.
+
+    `shade` and `contact` are the darkness of shadows and of spots under spheres.
+    """
+
+    back: int
+    line: int
+    shell: int
+    surface: int
+    text: int
+    floor: float
+    wall: float
+    key: tuple[float, float, float]
+    sky: tuple[float, float, float]
+    ground: tuple[float, float, float]
+    tint: float
+    shade: float
+    contact: float
+    fog: float = 0.5
+
+
+THEMES: dict[str, Palette] = {
+    "dark": Palette(
+        back=0x1A2231, line=0xA9BAD6, shell=0x35D97C, surface=0x3D4A63, text=0xE6EDF8,
+        floor=0.72, wall=0.16,
+        key=(1.2, 1.16, 1.1), sky=(0.34, 0.38, 0.46), ground=(0.09, 0.095, 0.12),
+        tint=0.06, shade=0.6, contact=0.75,
+    ),
+    "light": Palette(
+        back=0xFAFBFD, line=0x40506B, shell=0x0D9A4A, surface=0xE4E8EF, text=0x1F2937,
+        floor=0.85, wall=0.3,
+        key=(0.95, 0.93, 0.9), sky=(0.5, 0.52, 0.56), ground=(0.24, 0.24, 0.25),
+        tint=-0.46, shade=0.26, contact=0.42,
+    ),
+}  # fmt: skip
+
+
+def parts(color: int | Colors) -> Floats:
+    """Red, green and blue from 0 to 1, along a last axis."""
+    packed = np.asarray(color, np.uint32)[..., None]
+    rgb: Floats = (packed >> np.array([16, 8, 0], np.uint32) & 255) / 255
+    return rgb
+
+
+def whole(rgb: Floats) -> Colors:
+    """The same packed again."""
+    levels: Colors = np.floor(np.clip(rgb, 0, 1) * 255 + 0.5).astype(np.uint32)
+    shifted: Colors = levels << np.array([16, 8, 0], np.uint32)
+    return np.asarray(shifted.sum(axis=-1), np.uint32)
+
+
+def saturated(own: Floats, saturation: Floats) -> Floats:
+    """The paper's HSB colour: hue and brightness are the sphere's own, saturation its energy."""
+    most, least = own.max(axis=-1, keepdims=True), own.min(axis=-1, keepdims=True)
+    grey = most == least
+    hue = np.where(grey, [1.0, 0.0, 0.0], (own - least) / np.where(grey, 1.0, most - least))
+    result: Floats = most * (1 + np.asarray(saturation)[..., None] * (hue - 1))
+    return result
+
+
+def along(scale: tuple[int, ...], place: Floats) -> Floats:
+    """Colours on a scale, from 0 to 1."""
+    stops = parts(np.array(scale, np.uint32))
+    at = np.clip(place, 0, 1) * (len(scale) - 1)
+    step = np.minimum(at, len(scale) - 2).astype(np.intp)
+    result: Floats = stops[step] + (at - step)[..., None] * (stops[step + 1] - stops[step])
+    return result
+
+
+def colors_of(state: State, color: Color, full: float) -> Colors:
+    """The colour of each sphere, 0xRRGGBB.
+
+    `full` is the energy, speed or number of collisions at the end of the scale.
+    """
+    much: Floats = np.zeros(len(state))
+    if color == "collisions":
+        much = state.collision_count / full
+    elif color in ("energy", "speed"):
+        squares = np.einsum("ij,ij->i", state.velocity, state.velocity)
+        much = np.sqrt(squares) / full
+        if color == "energy":
+            much = np.where(state.fixed, 0.0, state.mass) * squares / 2 / full
+    return some_colors(state, color, np.clip(much, 0, 1))
+
+
+def some_colors(state: State, color: Color, shares: Floats) -> Colors:
+    """The colour of each sphere at a place on the scale, from 0 to 1."""
+    if color == "own":
+        return state.color
+    if color == "species":
+        species: Colors = SPECIES[state.species % len(SPECIES)]
+        return species
+    if color == "energy":
+        return whole(saturated(parts(state.color), shares))
+    return whole(along(SPEEDS if color == "speed" else COLLISIONS, shares))
+
+
+def full_count(counts: NDArray[np.uint32]) -> float:
+    """The end of the scale of collisions: 1, 2 or 5 times a power of ten, rounded up."""
+    most = max(FEWEST, int(counts.max(initial=0)))
+    power = 10.0 ** math.floor(math.log10(most))
+    return next(step * power for step in (1, 2, 5, 10) if step * power >= most)
+
+
+def is_paper(scene: Any) -> bool:
+    """Whether a scene (or None) has the look of the paper."""
+    return scene is not None and bool(scene.wire) and scene.color == "energy"
+
+
+def scales(state: State, world: World, *, paper: bool) -> dict[str, float]:
+    """Kinetic energy of full saturation, and where the scales of speed and gravity end.
+
+    Scenes in the paper's look keep the paper's number: saturation is KE/5 percent, so full at
+    500. Others have other units: there it is three times the mean energy of a free sphere,
+    rounded to 1, 2 or 5 times a power of ten. Where little moves yet, the energy of falling
+    through the scene counts.
+    """
+    free = ~state.fixed
+    if not free.any():
+        return {"full_energy": 1.0, "full_speed": 1.0, "full_gravity": 1.0}
+    mass, squares = state.mass[free], (state.velocity[free] ** 2).sum(axis=1)
+    fall = float(np.ptp(state.position[free] @ world.gravity))
+    energy = max(float((mass * squares).mean()) / 2, float(mass.mean()) * fall / 3)
+    speed = math.sqrt(max(float(squares.mean()), fall))
+    # A sphere of the mean energy then rises a fifth of the way across the world.
+    across = float(np.ptp(state.position, axis=0).max()) or float(state.radius.max())
+    strength = max(2.5 * float(squares.mean()) / across, 2 * float(np.abs(world.gravity).max()))
+    return {
+        "full_energy": PAPER_FULL if paper else _round(3 * energy),
+        "full_speed": _round(2 * speed),
+        "full_gravity": _round(strength),
+    }
+
+
+def _round(value: float) -> float:
+    """Round to the nearest of 1, 2, 5 times a power of ten; 1 for 0."""
+    if value <= 0 or not math.isfinite(value):
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(value))
+    return float(
+        min((1.0, 2.0, 5.0, 10.0), key=lambda step: abs(math.log(value / power / step))) * power
+    )
