@@ -75,7 +75,7 @@ class Recording:
     ...     sim.run(until=2)
     >>> run = carom.load(path)
     >>> run.start, run.end, len(run), run.scene.seed
-    (0.0, 2.0, 61, 1)
+    (0.0, 2.0, 31, 1)
     >>> bool((run[-1].position == sim.position).all())
     True
     """
