@@ -14,18 +14,21 @@ Examples
 True
 """
 
-from carom.observe.batch import Batch, Moment
+from carom.observe.batch import Batch, Moment, Twin
 from carom.observe.blocking import Settling, blocking, settling
+from carom.observe.chaos import Lyapunov
 from carom.observe.energy import Energy, MaxOverlap, Temperature
 from carom.observe.estimate import Estimate
 from carom.observe.flights import FreePath, FreeTime
 from carom.observe.lags import MSD, VACF, Diffusion
 from carom.observe.observable import Observable
+from carom.observe.order import Steinhardt
 from carom.observe.own import observable
 from carom.observe.pressure import Compressibility, PressureTensor, WallPressure
 from carom.observe.rates import CollisionRate, CollisionsPerSphere
 from carom.observe.space import RDF, DensityProfile, TemperatureProfile
 from carom.observe.speeds import HFunction, SpeedDistribution
+from carom.observe.structure import StructureFactor
 from carom.observe.table import Table
 
 #: All that can be measured, as ``carom run --observe`` calls it.
@@ -39,11 +42,14 @@ OBSERVABLES: dict[str, type[Observable]] = {
     "free-path": FreePath,
     "free-time": FreeTime,
     "h-function": HFunction,
+    "lyapunov": Lyapunov,
     "max-overlap": MaxOverlap,
     "msd": MSD,
     "pressure-tensor": PressureTensor,
     "rdf": RDF,
     "speed-distribution": SpeedDistribution,
+    "steinhardt": Steinhardt,
+    "structure-factor": StructureFactor,
     "temperature": Temperature,
     "temperature-profile": TemperatureProfile,
     "vacf": VACF,
@@ -66,15 +72,19 @@ __all__ = [
     "FreePath",
     "FreeTime",
     "HFunction",
+    "Lyapunov",
     "MaxOverlap",
     "Moment",
     "Observable",
     "PressureTensor",
     "Settling",
     "SpeedDistribution",
+    "Steinhardt",
+    "StructureFactor",
     "Table",
     "Temperature",
     "TemperatureProfile",
+    "Twin",
     "WallPressure",
     "blocking",
     "observable",

@@ -65,7 +65,8 @@ def mean_free_time(state: State, world: World) -> float:
     """
     volume, temperature = mechanics.volume(world), mechanics.temperature(state, world)
     kinds = Kinds(state)
-    if world.collide and volume > 0 and temperature > 0 and 0 < len(kinds) <= MOST_KINDS:
+    several = kinds.count.sum() > 1 and len(kinds) <= MOST_KINDS
+    if world.collide and volume > 0 and temperature > 0 and several:
         volume = max(volume, 4 / 3 * math.pi * float(kinds.count @ kinds.radius**3) / DENSEST)
         each = theory.pair_rates(kinds.radius, volume, kinds.count, kinds.mass, temperature)
         mean = float(each.sum(axis=1) @ kinds.count / kinds.count.sum())
