@@ -44,7 +44,7 @@ class TestForReal:
         assert (status, err) == (0, "")
         for words in (
             "What measuring costs",
-            "4,000 spheres",
+            "N 4,000",
             "bound 20 %",
             "msd",
             "wall-pressure",

@@ -25,8 +25,9 @@ from carom.observe.observable import Observable
 from carom.observe.order import Steinhardt
 from carom.observe.own import observable
 from carom.observe.pressure import Compressibility, PressureTensor, WallPressure
+from carom.observe.radial import RDF
 from carom.observe.rates import CollisionRate, CollisionsPerSphere
-from carom.observe.space import RDF, DensityProfile, TemperatureProfile
+from carom.observe.space import DensityProfile, TemperatureProfile
 from carom.observe.speeds import HFunction, SpeedDistribution
 from carom.observe.structure import StructureFactor
 from carom.observe.table import Table

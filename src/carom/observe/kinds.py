@@ -95,6 +95,17 @@ def labels(kinds: Kinds) -> NDArray[np.str_]:
     return np.array([f"r={r:.4g} m={m:.4g}" for r, m in zip(kinds.radius, kinds.mass, strict=True)])
 
 
+def letters(kinds: Kinds) -> list[str]:
+    """A letter for each kind, where a column has its name; `MOST_KINDS` at most."""
+    return [chr(ord("A") + k) for k in range(len(kinds))]
+
+
+def legend(kinds: Kinds) -> str:
+    """Which letter is which kind."""
+    words = zip(letters(kinds), labels(kinds), strict=True)
+    return ", ".join(f"{letter}: {label}" for letter, label in words)
+
+
 def refuse_losses(world: World, name: str) -> None:
     """Refuse a world in which the temperature changes by itself.
 
