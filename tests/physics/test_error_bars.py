@@ -28,7 +28,7 @@ def runs():
         sim = carom.Simulation(carom.scenes.fluid(n=108, packing_fraction=0.3, seed=seed + 1))
         sim.run(collisions=40 * 108)
         made = {name: make(**options) for name, (make, options, _) in WATCHED.items()}
-        sim.run(collisions=15_000, observe=list(made.values()))
+        sim.run(collisions=30_000, observe=list(made.values()))
         for name, observable in made.items():
             table, column = observable.table(), WATCHED[name][2]
             rows = np.column_stack([table[column], table[f"{column}_error"]])
@@ -36,6 +36,7 @@ def runs():
     return {name: np.array(rows) for name, rows in found.items()}
 
 
+@pytest.mark.validate
 @pytest.mark.parametrize("name", WATCHED)
 def test_results_scatter_as_their_errors_say(runs, name):
     value, error = runs[name][..., 0], runs[name][..., 1]
