@@ -100,7 +100,6 @@ class Lagged(Observable):
 
     def _means(self, k: int = 0) -> list[Estimate]:
         """One for each lag that was reached, of one group of spheres; all are the first."""
-        self.over_samples()
         found = []
         for place in range(int(np.count_nonzero(self._count))):
             n = int(self._count[place])
@@ -115,6 +114,7 @@ class Lagged(Observable):
         return found
 
     def _table(self, title: str, column: str, unit: str) -> Table:
+        self.over_samples()
         assert self.schedule is not None
         time = np.array(self.schedule.at[: np.count_nonzero(self._count)])
         columns, units, several = {"time": time}, {"time": "time"}, len(self._groups) > 1
@@ -311,6 +311,7 @@ class Diffusion(MSD):
 
     def result(self) -> Table:
         """D in this box, and in one without end."""
+        self.over_samples()
         means = self._means()
         if len(means) < 2:
             assert self.schedule is not None
