@@ -376,4 +376,8 @@ class Motion:
 
     def _probe(self) -> Engine:
         """An engine that goes on from here without any trace."""
-        return self._make_engine(self.state, self.world, False)
+        return self.going_on(self.state)
+
+    def going_on(self, state: State) -> Engine:
+        """Another engine, which goes on from these spheres in this world without any trace."""
+        return self._make_engine(state, self.world, False)

@@ -214,8 +214,11 @@ class TestSpace:
         apart -= period * np.rint(apart / period)
         all_ = np.sqrt((apart**2).sum(axis=2))
         all_ = all_[(all_ <= reach) & (all_ > 0)]
-        found = observe.space.distances(position, period, centres, reach)
+        found, start, end = observe.radial.distances(position, period, centres, reach)
         assert np.sort(found) == pytest.approx(np.sort(all_), rel=1e-12)
+        apart = position[start] - position[end]
+        apart -= period * np.rint(apart / period)
+        assert found == pytest.approx(np.sqrt((apart**2).sum(axis=1)), rel=1e-12)
 
     def test_a_uniform_fluid(self):
         density, kT = (

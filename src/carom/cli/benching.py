@@ -5,20 +5,17 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
 from carom.bench import cases, results, suite
 from carom.bench.cases import Case
 from carom.checks import nearest, number
-from carom.cli import report
+from carom.cli import bench_observables, report
+from carom.cli.bench_files import where
 from carom.cli.source import parsed, whole
-from carom.errors import FileError, InputError, UnknownNameError
+from carom.errors import InputError, UnknownNameError
 
 FAILED = 1
-#: Where results go in a checkout of carom, seen from its root. Elsewhere, and where only some cases
-#: are chosen, -o alone keeps them.
-CHECKOUT = Path("benchmarks", "results")
 FULL_FILE, QUICK_FILE = "speed.json", "quick.json"
 
 Strings = str | None
@@ -42,6 +39,12 @@ def bench(
     phi: Annotated[
         Strings, typer.Option(metavar="PHI,...", help="Packing fractions of the fluids.")
     ] = None,
+    observables: Annotated[
+        bool,
+        typer.Option(
+            "--observables", metavar="", help="What measuring costs: each that --observe knows."
+        ),
+    ] = False,
     repetitions: Annotated[
         str, typer.Option(metavar="COUNT", help="How often each is timed.")
     ] = "5",
@@ -73,11 +76,22 @@ def bench(
     and 0.49.
     """
     times = int(number("--repetitions", whole("repetitions", repetitions), at_least=1))
+    if observables:
+        others = {
+            "--full": full,
+            "--n": n,
+            "--phi": phi,
+            "--profile": profile,
+            "--compare": compare,
+        }
+        bench_observables.bench(only, times, output, others, as_json=json, quiet=quiet)
+        return
     chosen = choice(full, only, n, phi)
     before = results.read(Path(compare)) if compare else None
     if before:
         _assert_shared(chosen, before, str(compare))
-    path = _file(output, full, chosen=any(option is not None for option in (only, n, phi)))
+    chosen_some = any(option is not None for option in (only, n, phi))
+    path = where(output, FULL_FILE if full else QUICK_FILE, chosen=chosen_some)
     fit, large = suite.fitting(chosen)
     rows = _run(fit, times, profile=profile, quiet=quiet or json)
     found = results.result(rows, [case.name for case in large])
@@ -146,40 +160,11 @@ def _assert_shared(chosen: list[Case], before: dict[str, Any], path: str) -> Non
         raise InputError(msg)
 
 
-def _file(output: Strings, full: bool, *, chosen: bool) -> Path | None:
-    """Where the result goes; that it cannot go there is said before a minute of work."""
-    if output is None:
-        if chosen or not (CHECKOUT.is_dir() and Path("src", "carom").is_dir()):
-            return None
-        return CHECKOUT / (FULL_FILE if full else QUICK_FILE)
-    path = Path(output)
-    if path.is_dir() or not path.parent.is_dir():
-        why = "it is a folder" if path.is_dir() else f"there is no folder {path.parent}"
-        msg = f"cannot write {path}: {why}; choose another file with -o"
-        raise FileError(msg)
-    return path
-
-
 def _run(
     chosen: list[Case], repetitions: int, *, profile: bool, quiet: bool
 ) -> list[dict[str, Any]]:
-    """Measure with a progress bar on standard error, if somebody looks at it."""
-    console = report.notes()
-    with Progress(
-        TextColumn("{task.description}", style="bold"),
-        BarColumn(bar_width=None),
-        TaskProgressColumn(),
-        TextColumn("{task.fields[step]}", style="cyan"),
-        TimeRemainingColumn(compact=True),
-        console=console,
-        transient=True,
-        disable=quiet or not console.is_terminal,
-    ) as bar:
-        task = bar.add_task("bench", total=1.0, step="")
-
-        def tell(step: str, name: str, share: float) -> None:
-            bar.update(task, advance=share, step=f"{name} {step}")
-
+    """Measure with a progress bar."""
+    with report.progress("bench", quiet=quiet) as tell:
         return suite.measured(chosen, repetitions, profile=profile, progress=tell)
 
 

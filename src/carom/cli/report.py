@@ -1,10 +1,13 @@
 """How results look in a terminal."""
 
 import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from rich.box import ROUNDED
 from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.table import Table
 from rich.text import Text
 
@@ -44,6 +47,31 @@ def warn_of_network(address: str) -> None:
 def write_json(data: Any) -> None:
     """Write one JSON document on standard output."""
     output().print(json.dumps(data, allow_nan=False), soft_wrap=True, markup=False)
+
+
+@contextmanager
+def progress(what: str, *, quiet: bool) -> Iterator[Callable[[str, str, float], None]]:
+    """A progress bar on standard error, if somebody looks at it.
+
+    What it hands over is told of each step: what is done, whose, its share of the whole.
+    """
+    console = notes()
+    with Progress(
+        TextColumn("{task.description}", style="bold"),
+        BarColumn(bar_width=None),
+        TaskProgressColumn(),
+        TextColumn("{task.fields[step]}", style="cyan"),
+        TimeRemainingColumn(compact=True),
+        console=console,
+        transient=True,
+        disable=quiet or not console.is_terminal,
+    ) as bar:
+        task = bar.add_task(what, total=1.0, step="")
+
+        def tell(step: str, name: str, share: float) -> None:
+            bar.update(task, advance=share, step=f"{name} {step}")
+
+        yield tell
 
 
 def table(title: Text | None, *columns: str) -> Table:

@@ -14,18 +14,22 @@ Examples
 True
 """
 
-from carom.observe.batch import Batch, Moment
+from carom.observe.batch import Batch, Moment, Twin
 from carom.observe.blocking import Settling, blocking, settling
+from carom.observe.chaos import Lyapunov
 from carom.observe.energy import Energy, MaxOverlap, Temperature
 from carom.observe.estimate import Estimate
 from carom.observe.flights import FreePath, FreeTime
 from carom.observe.lags import MSD, VACF, Diffusion
 from carom.observe.observable import Observable
+from carom.observe.order import Steinhardt
 from carom.observe.own import observable
 from carom.observe.pressure import Compressibility, PressureTensor, WallPressure
+from carom.observe.radial import RDF
 from carom.observe.rates import CollisionRate, CollisionsPerSphere
-from carom.observe.space import RDF, DensityProfile, TemperatureProfile
+from carom.observe.space import DensityProfile, TemperatureProfile
 from carom.observe.speeds import HFunction, SpeedDistribution
+from carom.observe.structure import StructureFactor
 from carom.observe.table import Table
 from carom.observe.transport import (
     BulkViscosity,
@@ -46,6 +50,7 @@ OBSERVABLES: dict[str, type[Observable]] = {
     "free-path": FreePath,
     "free-time": FreeTime,
     "h-function": HFunction,
+    "lyapunov": Lyapunov,
     "max-overlap": MaxOverlap,
     "msd": MSD,
     "mutual-diffusion": MutualDiffusion,
@@ -53,6 +58,8 @@ OBSERVABLES: dict[str, type[Observable]] = {
     "rdf": RDF,
     "shear-viscosity": ShearViscosity,
     "speed-distribution": SpeedDistribution,
+    "steinhardt": Steinhardt,
+    "structure-factor": StructureFactor,
     "temperature": Temperature,
     "temperature-profile": TemperatureProfile,
     "thermal-conductivity": ThermalConductivity,
@@ -77,6 +84,7 @@ __all__ = [
     "FreePath",
     "FreeTime",
     "HFunction",
+    "Lyapunov",
     "MaxOverlap",
     "Moment",
     "MutualDiffusion",
@@ -85,10 +93,13 @@ __all__ = [
     "Settling",
     "ShearViscosity",
     "SpeedDistribution",
+    "Steinhardt",
+    "StructureFactor",
     "Table",
     "Temperature",
     "TemperatureProfile",
     "ThermalConductivity",
+    "Twin",
     "WallPressure",
     "blocking",
     "observable",

@@ -12,8 +12,25 @@ from carom.world import World
 Ints = NDArray[np.int32]
 
 
+class Twin(Protocol):
+    """Another run in the same world: what of an engine observables need."""
+
+    @property
+    def time(self) -> float:
+        """Simulated time."""
+
+    def advance(self, until: float) -> object:
+        """Run to a time, or a part of the way."""
+
+    def state(self) -> State:
+        """Its spheres now."""
+
+
 class Moment(Protocol):
     """What there is to read when time stands still."""
+
+    def going_on(self, state: State) -> Twin:
+        """Another run, of these spheres in this world; this one does not notice."""
 
     @property
     def state(self) -> State:

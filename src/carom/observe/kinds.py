@@ -65,7 +65,8 @@ def mean_free_time(state: State, world: World) -> float:
     """
     volume, temperature = mechanics.volume(world), mechanics.temperature(state, world)
     kinds = Kinds(state)
-    if world.collide and volume > 0 and temperature > 0 and 0 < len(kinds) <= MOST_KINDS:
+    several = kinds.count.sum() > 1 and len(kinds) <= MOST_KINDS
+    if world.collide and volume > 0 and temperature > 0 and several:
         volume = max(volume, 4 / 3 * math.pi * float(kinds.count @ kinds.radius**3) / DENSEST)
         each = theory.pair_rates(kinds.radius, volume, kinds.count, kinds.mass, temperature)
         mean = float(each.sum(axis=1) @ kinds.count / kinds.count.sum())
@@ -92,6 +93,17 @@ def conserves_energy(world: World) -> bool:
 def labels(kinds: Kinds) -> NDArray[np.str_]:
     """A word for each kind."""
     return np.array([f"r={r:.4g} m={m:.4g}" for r, m in zip(kinds.radius, kinds.mass, strict=True)])
+
+
+def letters(kinds: Kinds) -> list[str]:
+    """A letter for each kind, where a column has its name; `MOST_KINDS` at most."""
+    return [chr(ord("A") + k) for k in range(len(kinds))]
+
+
+def legend(kinds: Kinds) -> str:
+    """Which letter is which kind."""
+    words = zip(letters(kinds), labels(kinds), strict=True)
+    return ", ".join(f"{letter}: {label}" for letter, label in words)
 
 
 def refuse_losses(world: World, name: str) -> None:

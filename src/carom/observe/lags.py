@@ -9,21 +9,32 @@ from carom import mechanics, theory
 from carom.errors import InputError
 from carom.observe.batch import Moment
 from carom.observe.estimate import Estimate
-from carom.observe.fluid import UP_TO, Fluid, fluid_of
-from carom.observe.kinds import mean_free_time, one_kind, refuse_losses, refuse_walls, unmoved
+from carom.observe.fluid import UP_TO, Fluid, fluid_of, in_range, is_gas
+from carom.observe.kinds import (
+    MOST_KINDS,
+    Kinds,
+    legend,
+    letters,
+    mean_free_time,
+    one_kind,
+    refuse_losses,
+    refuse_walls,
+    unmoved,
+)
 from carom.observe.observable import Observable, Schedule, log_times, once
 from carom.observe.table import Table, Theory
 from carom.state import Floats
 
 ENOUGH = 16  #: windows whose own spread gives the error
-MEMORY = f"Enskog, velocities that forget at the rate 2 omega/3, {UP_TO}"
+MEMORY = f"Enskog, velocities that forget exponentially, {UP_TO}"
 
 
 class Lagged(Observable):
     """Base of means over spheres of something between a moment and a later one.
 
     A window begins when the one before has ended, at the last lag. Of 16 windows or more the
-    error is that of their means; of fewer, that of as many independent spheres.
+    error is that of their means; of fewer, that of as many independent spheres. Where there are
+    several kinds of spheres (radius and mass) each has a column besides that of all.
 
     Parameters
     ----------
@@ -49,10 +60,16 @@ class Lagged(Observable):
             msg = f"{self.name} is of spheres that move, and all are fixed"
             raise InputError(msg)
         self.schedule = self._lags or self._natural(mean_free_time(state, world))
-        n = len(self.schedule.at)
+        self._kinds = kinds = Kinds(state)
+        self._groups = [np.ones(len(self._free[self._free]), np.bool_)]
+        if 1 < len(kinds) <= MOST_KINDS:
+            self._groups += [kinds.of[self._free] == k for k in range(len(kinds))]
+        n, groups = len(self.schedule.at), len(self._groups)
         self._count = np.zeros(n, np.int64)  # windows
-        self._sum, self._squares, self._spheres = np.zeros(n), np.zeros(n), np.zeros(n)
+        self._sum, self._squares, self._spheres = np.zeros((3, groups, n))
+        self._scale = np.ones(groups)
         self._fluid, self._said = fluid_of(moment)
+        self._forgets = forgetting_of_kinds(moment, kinds)
         self._kT = mechanics.temperature(state, world)
         self._open(moment)
 
@@ -64,11 +81,13 @@ class Lagged(Observable):
         assert self.schedule is not None
         place = self.samples % len(self.schedule.at)
         of_spheres = self._look(moment, place)
-        mean = float(of_spheres.mean())
         self._count[place] += 1
-        self._sum[place] += mean
-        self._squares[place] += mean * mean
-        self._spheres[place] += float(of_spheres.var())
+        for k, group in enumerate(self._groups):
+            values = (of_spheres if k == 0 else of_spheres[group]) / self._scale[k]
+            mean = float(values.mean())
+            self._sum[k, place] += mean
+            self._squares[k, place] += mean * mean
+            self._spheres[k, place] += float(values.var())
         if place == len(self.schedule.at) - 1:
             self._open(moment)
 
@@ -79,40 +98,65 @@ class Lagged(Observable):
         """One number for each free sphere."""
         raise NotImplementedError
 
-    def _means(self) -> list[Estimate]:
-        """One for each lag that was reached."""
-        self.over_samples()
+    def _means(self, k: int = 0) -> list[Estimate]:
+        """One for each lag that was reached, of one group of spheres; all are the first."""
         found = []
         for place in range(int(np.count_nonzero(self._count))):
             n = int(self._count[place])
-            mean = float(self._sum[place]) / n
+            mean = float(self._sum[k, place]) / n
             if n >= ENOUGH:
-                spread = max(0.0, float(self._squares[place]) / n - mean**2) * n / (n - 1)
+                spread = max(0.0, float(self._squares[k, place]) / n - mean**2) * n / (n - 1)
                 found.append(Estimate(mean, math.sqrt(spread / n), n))
             else:
-                spheres = int(np.count_nonzero(self._free))
-                spread = float(self._spheres[place]) / n
+                spheres = int(np.count_nonzero(self._groups[k]))
+                spread = float(self._spheres[k, place]) / n
                 found.append(Estimate(mean, math.sqrt(spread / (n * spheres)), n * spheres))
         return found
 
-    def _table(self, title: str, column: str, unit: str, line: Any) -> Table:
-        means = self._means()
+    def _table(self, title: str, column: str, unit: str) -> Table:
+        self.over_samples()
         assert self.schedule is not None
-        time = np.array(self.schedule.at[: len(means)])
-        expected = np.full(len(time), math.nan)
+        time = np.array(self.schedule.at[: np.count_nonzero(self._count)])
+        columns, units, several = {"time": time}, {"time": "time"}, len(self._groups) > 1
+        names = [column, *(f"{column}_{letter}" for letter in letters(self._kinds) if several)]
+        for k, name in enumerate(names):
+            means = self._means(k)
+            columns[name] = np.array([e.value for e in means])
+            columns[f"{name}_error"] = np.array([e.error for e in means])
+            columns[f"{name}_theory"] = self._expected(k, time)
+            units |= {name: unit} if unit else {}
+        known = self._fluid is not None or self._forgets is not None
+        notes = (legend(self._kinds),) if several else ()
+        return Table(title, columns, units, MEMORY if known else self._said, notes)
+
+    def _expected(self, k: int, time: Floats) -> Floats:
+        """Theory's line for one group; nan for kinds together, of which each has its own."""
         if self._fluid is not None:
-            expected = line(self._fluid, time)
-        return Table(
-            title,
-            {
-                "time": time,
-                column: np.array([e.value for e in means]),
-                f"{column}_error": np.array([e.error for e in means]),
-                f"{column}_theory": expected,
-            },
-            {"time": "time", **({column: unit} if unit else {})},
-            self._said if self._fluid is None else MEMORY,
-        )
+            return self._line(forgetting(self._fluid), self._fluid.mass, time)
+        if k == 0 or self._forgets is None:
+            return np.full(len(time), math.nan)
+        return self._line(float(self._forgets[k - 1]), float(self._kinds.mass[k - 1]), time)
+
+    def _line(self, rate: float, mass: float, t: Floats) -> Floats:
+        """Theory's line for spheres of a mass whose velocities forget at a rate."""
+        raise NotImplementedError
+
+
+def forgetting_of_kinds(moment: Moment, kinds: Kinds) -> Floats | None:
+    """The rate at which velocities of each of several kinds forget, by Enskog; None where unknown.
+
+    A collision of i with j takes (4/3) m_j/(m_i + m_j) of the velocity of i, on average.
+    """
+    state, world = moment.state, moment.world
+    if not (is_gas(state, world) and 1 < len(kinds) <= MOST_KINDS):
+        return None
+    volume, kT = mechanics.volume(world), mechanics.temperature(state, world)
+    rates = in_range(theory.pair_rates, kinds.radius, volume, kinds.count, kinds.mass, kT)
+    if rates is None:
+        return None
+    mass = kinds.mass
+    found: Floats = (rates * (4 / 3 * mass / (mass[:, None] + mass))).sum(axis=1)
+    return found
 
 
 def forgetting(fluid: Fluid) -> float:
@@ -135,9 +179,10 @@ class MSD(Lagged):
     """Mean square displacement <|r(t) - r(0)|^2> of all free spheres.
 
     Positions are unwrapped; the motion of the centre of mass is taken off where it is free. The
-    theory line, for one kind in a periodic box, is that of an exponential memory with
-    Enskog's collision rate omega: 6 D [t - tau (1 - exp(-t/tau))], tau = 3/(2 omega) and
-    D = kT tau/m. Result: `Table`.
+    theory line of each kind in a periodic box is that of an exponential memory with
+    Enskog's collision rates: 6 D [t - tau (1 - exp(-t/tau))], D = kT tau/m and, for kind i, 1/tau =
+    sum over kinds j of (4/3) nu_ij m_j/(m_i + m_j), which is 2 omega/3 of one kind. Result:
+    `Table`.
 
     Parameters
     ----------
@@ -160,13 +205,13 @@ class MSD(Lagged):
 
     def result(self) -> Table:
         """Lags that were reached so far."""
-        return self._table("Mean square displacement", "msd", "length^2", self._line)
+        return self._table("Mean square displacement", "msd", "length^2")
 
-    def _line(self, fluid: Fluid, t: Floats) -> Floats:
-        tau = 1 / forgetting(fluid)
-        # About their centre of mass N spheres have 3 N - 3 degrees of freedom.
-        freedom = 1 - 1 / np.count_nonzero(self._free)
-        square = freedom * fluid.temperature / fluid.mass
+    def _line(self, rate: float, mass: float, t: Floats) -> Floats:
+        tau = 1 / rate
+        # About the centre of mass of all, of mass M, velocities have (1 - m/M) kT/m.
+        whole = float(self._kinds.count @ self._kinds.mass)
+        square = (1 - mass / whole) * self._kT / mass
         line: Floats = 6 * square * tau * (t - tau * (1 - np.exp(-t / tau)))
         return line
 
@@ -175,7 +220,8 @@ class VACF(Lagged):
     """Velocity autocorrelation <v(0).v(t)>/<v^2> of all free spheres.
 
     Velocities are about the motion of the whole, where that is conserved. It begins with the
-    slope -2 omega/3 exactly; the theory line exp(-2 omega t/3) is Enskog's. Result: `Table`.
+    slope -1/tau exactly; the theory line exp(-t/tau) of each kind is Enskog's, tau as of
+    `MSD`. Result: `Table`.
 
     Parameters
     ----------
@@ -190,11 +236,12 @@ class VACF(Lagged):
 
     def _open(self, moment: Moment) -> None:
         velocity = unmoved(moment.state, moment.world)[self._free]
-        square = float((velocity * velocity).sum(axis=1).mean())
-        if square == 0:
+        squares = (velocity * velocity).sum(axis=1)
+        self._scale = np.array([float(squares[group].mean()) for group in self._groups])
+        if not (self._scale > 0).all():
             msg = f"{self.name} is of spheres that move against one another; give them velocities"
             raise InputError(msg)
-        self._from = velocity / square
+        self._from = velocity
 
     def _look(self, moment: Moment, place: int) -> Floats:
         velocity = unmoved(moment.state, moment.world)[self._free]
@@ -203,10 +250,10 @@ class VACF(Lagged):
 
     def result(self) -> Table:
         """Lags that were reached so far."""
-        return self._table("Velocity autocorrelation", "vacf", "", self._line)
+        return self._table("Velocity autocorrelation", "vacf", "")
 
-    def _line(self, fluid: Fluid, t: Floats) -> Floats:
-        line: Floats = np.exp(-forgetting(fluid) * t)
+    def _line(self, rate: float, mass: float, t: Floats) -> Floats:
+        line: Floats = np.exp(-rate * t)
         return line
 
 
@@ -264,6 +311,7 @@ class Diffusion(MSD):
 
     def result(self) -> Table:
         """D in this box, and in one without end."""
+        self.over_samples()
         means = self._means()
         if len(means) < 2:
             assert self.schedule is not None

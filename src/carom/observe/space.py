@@ -1,4 +1,4 @@
-"""Where spheres are: around one another, and along an axis."""
+"""Where spheres are along an axis."""
 
 import math
 
@@ -10,9 +10,9 @@ from carom.checks import number
 from carom.errors import InputError
 from carom.observe.batch import Moment
 from carom.observe.fluid import in_range
-from carom.observe.kinds import Kinds, conserves_energy, is_elastic, refuse_walls
+from carom.observe.kinds import Kinds, conserves_energy, is_elastic
 from carom.observe.sampled import Sampled
-from carom.observe.series import Series, poisson
+from carom.observe.series import Series
 from carom.observe.table import Table
 from carom.state import Floats, State
 from carom.world import PLANE, World
@@ -21,110 +21,6 @@ POINTS = 50  #: in a layer, for the mean of a theory over it
 _FLOOR = theory.about(theory.barometric_density).ranges["floor_packing_fraction"]
 THIN = f"up to packing fraction {_FLOOR.high} at the floor"
 CROWDED = f"none, the barometric formula holds {THIN}"
-CENTRES = 500  #: spheres around which one sample counts the others
-
-
-class RDF(Sampled):
-    """Radial distribution g(r): spheres at a distance, over those that chance would put there.
-
-    In a periodic box, over all spheres alike. Each sample looks around 500 spheres, others each
-    time. Errors are those of independent counts. Result: `Table`, at the middles of 0.02
-    mean diameters, from where the smallest spheres touch.
-
-    Parameters
-    ----------
-    reach : float, optional
-        Largest distance; three mean diameters if left out, or half the shortest side.
-    every, at
-        As of `Sampled`, but a hundred mean free times if left out: counting pairs takes long.
-
-    References
-    ----------
-    M. P. Allen, D. J. Tildesley, Computer Simulation of Liquids, 2nd ed., Oxford 2017,
-    section 8.2.
-    """
-
-    apart = 100.0
-
-    def __init__(
-        self, reach: float | None = None, every: float | None = None, *, at: object = None
-    ) -> None:
-        super().__init__(every, at=at)
-        self._asked = None if reach is None else number("reach", reach, above=0)
-
-    def begin(self, moment: Moment) -> None:
-        """Refuse what has no mean density."""
-        super().begin(moment)
-        state, world = moment.state, moment.world
-        refuse_walls(world, self.name, "take carom.Periodic, or there is no mean density")
-        diameter, half = 2 * float(state.radius.mean()), float(world.period.min()) / 2
-        self._reach = min(3 * diameter, half) if self._asked is None else self._asked
-        if self._reach > half:
-            msg = f"reach is {self._reach:g}, more than half the shortest side, {half:.6g}"
-            raise InputError(msg)
-        bins = max(1, round(self._reach / (0.02 * diameter)))
-        self._counts = np.zeros(bins)
-        self._contact = 2 * float(state.radius.min()) if world.collide else 0.0
-        if self._contact >= self._reach or len(state) < 2:
-            msg = f"{self.name} reaches to {self._reach:.6g}, where no two spheres can be"
-            raise InputError(msg)
-        self._centres, self._offset = 0, 0
-        self._density = (len(state) - 1) / mechanics.volume(world)
-
-    def sample(self, moment: Moment) -> None:
-        """Count the others around some spheres."""
-        n = len(moment.state)
-        some = min(n, CENTRES)
-        # Neighbours in number are often neighbours in space: take them from everywhere.
-        centres = (self._offset + np.arange(some) * n // some) % n
-        self._offset += 1
-        distance = distances(moment.state.position, moment.world.period, centres, self._reach)
-        found, _ = np.histogram(distance, len(self._counts), (0, self._reach))
-        self._counts += found
-        self._centres += some
-
-    def result(self) -> Table:
-        """g(r) so far."""
-        self.over_samples()
-        edges = np.linspace(0, self._reach, len(self._counts) + 1)
-        edges = edges[np.searchsorted(edges, self._contact, "right") - 1 :]
-        counts = self._counts[len(self._counts) + 1 - len(edges) :]
-        expected = self._centres * self._density * 4 / 3 * math.pi * np.diff(edges**3)
-        return Table(
-            "Radial distribution",
-            {
-                "distance": (edges[1:] + edges[:-1]) / 2,
-                "g": counts / expected,
-                "g_error": poisson(counts) / expected,
-            },
-            {"distance": "length"},
-        )
-
-
-def distances(position: Floats, period: Floats, centres: NDArray[np.int64], reach: float) -> Floats:
-    """Distances up to `reach` from some spheres to all others, by cells as long as that."""
-    cells = np.maximum(1, np.floor(period / reach)).astype(np.int64)
-    if (cells < 3).any():
-        cells[:] = 1
-    place = np.floor((position / period + 0.5) * cells).astype(np.int64) % cells
-    number_of = (place[:, 0] * cells[1] + place[:, 1]) * cells[2] + place[:, 2]
-    order = np.argsort(number_of, kind="stable")
-    starts = np.searchsorted(number_of[order], np.arange(cells.prod() + 1))
-    steps = np.arange(-1, 2) if cells[0] > 1 else np.zeros(1, np.int64)
-    found = []
-    for step in np.stack(np.meshgrid(steps, steps, steps), -1).reshape(-1, 3):
-        beside = (place[centres] + step) % cells
-        cell = (beside[:, 0] * cells[1] + beside[:, 1]) * cells[2] + beside[:, 2]
-        many = starts[cell + 1] - starts[cell]
-        from_ = np.repeat(centres, many)
-        within = np.arange(many.sum()) - np.repeat(np.cumsum(many) - many, many)
-        to = order[np.repeat(starts[cell], many) + within]
-        apart = position[to] - position[from_]
-        apart -= period * np.rint(apart / period)
-        square = (apart * apart).sum(axis=1)
-        found.append(np.sqrt(square[(square <= reach * reach) & (to != from_)]))
-    result: Floats = np.concatenate(found)
-    return result
 
 
 class _Profile(Sampled):

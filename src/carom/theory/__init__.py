@@ -48,6 +48,7 @@ from carom.theory.speeds import (
     maxwell_speed_cdf,
     maxwell_speed_pdf,
 )
+from carom.theory.structure import percus_yevick
 from carom.theory.transport import (
     bulk_viscosity,
     finite_size_diffusion,
@@ -94,6 +95,7 @@ __all__ = [
     "mean_height",
     "mutual_diffusion",
     "pair_rates",
+    "percus_yevick",
     "rod_collision_rate",
     "rod_force",
     "rod_wall_rate",
