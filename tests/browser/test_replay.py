@@ -131,7 +131,7 @@ def test_it_has_what_it_can_do_and_nothing_else(play, tmp_path):
         )
     )
     assert {"play", "scrub", "speed", "earlier", "later", "theme", "fullscreen"} <= visible
-    assert not visible & {"add", "gallery-button", "compare", "keep"}
+    assert not visible & {"add", "gallery-button", "compare"}
     assert not shown.js("document.getElementById('section-settings').checkVisibility()")
     unnamed = """[...document.querySelectorAll("button, input")].filter((e) => e.checkVisibility()
         && !e.getAttribute("aria-label") && !e.labels?.length && !e.innerText.trim()).length"""
@@ -143,6 +143,7 @@ def test_it_has_what_it_can_do_and_nothing_else(play, tmp_path):
     shown.page.keyboard.press("Escape")
     shown.page.keyboard.press("l")
     assert shown.page.locator("#share").is_visible()
+    assert not shown.js("!!document.getElementById('keep')")
     assert not shown.page.get_by_role("textbox").count()
 
 
@@ -168,8 +169,11 @@ def test_the_live_page_saves_what_it_has_shown(show, play, tmp_path):
     shown.settle()
     kept = shown.js("carom.recorder.keyframes.map((k) => k.t)")
     last = shown.js("[...carom.recorder.keyframes.at(-1).position]")
+    shown.page.keyboard.press("l")
+    button = shown.page.get_by_role("button", name="Save last minute (replay)")
+    assert button.get_attribute("title") == "Save the last minute as a replay (Y)"
     with shown.page.expect_download() as download:
-        shown.page.get_by_role("button", name="Save the last minute as a replay").click()
+        button.click()
     assert download.value.suggested_filename == "gas-in-a-box.html"
     path = tmp_path / "saved.html"
     download.value.save_as(path)
