@@ -107,7 +107,7 @@ def test_two_widgets_live_side_by_side(notebook):
     assert first.evaluate("document.body.dataset.theme") == second.evaluate(
         "document.body.dataset.theme"
     )
-    hidden = "['gallery-button', 'keep', 'film'].every((id) => document.getElementById(id).hidden)"
+    hidden = "['gallery-button', 'film'].every((id) => document.getElementById(id).hidden)"
     assert first.evaluate(hidden)
 
 

@@ -89,7 +89,8 @@ export class Page {
     this.gallery = new Gallery((name) => send(say.scene(name, {})));
     this.help = new Help(mode);
     const askSource = changes ? () => send(say.source()) : null;
-    this.share = new Share({ token, picture: () => this.#photo(), askSource });
+    const keep = mode === "live" ? () => this.actions.keep() : null;
+    this.share = new Share({ token, picture: () => this.#photo(), askSource, keep });
     this.parameters = new Parameters((name, options) => send(say.scene(name, options)));
     this.laws = new SettingsPanel(send, this.camera);
     this.comparison = new Comparison();

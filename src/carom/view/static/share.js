@@ -3,6 +3,7 @@ import { copyText } from "./clipboard.js";
 import { Dialog } from "./dialog.js";
 import { element } from "./dom.js";
 import { saveFile } from "./file.js";
+import { titleOf } from "./keys.js";
 import { formatLink } from "./link.js";
 import { toast } from "./toast.js";
 
@@ -10,6 +11,7 @@ import { toast } from "./toast.js";
  * @typedef {object} Needs
  * @property {() => Promise<Blob>} picture
  * @property {(() => void) | null} askSource null where there is no program to ask
+ * @property {(() => void) | null} keep saves the last minute; null where nothing is kept
  * @property {string} token
  */
 
@@ -29,9 +31,19 @@ export class Share {
     this.python = area("Show as Python", "python");
     this.toml = area("Show as TOML", "toml");
     const left = element("div", { class: "picture" }, this.preview, save);
+    const { keep } = needs;
+    if (keep !== null) {
+      left.append(keepButton(() => {
+        this.dialog.close(); // what is said about it would lie beneath
+        keep();
+      }));
+    }
     const right = element("div", { class: "texts" }, this.link.place, this.command.place);
     const top = element("div", { class: "share" }, left, right);
-    if (needs.askSource === null) for (const { place } of [this.command, this.python, this.toml]) place.hidden = true;
+    if (needs.askSource === null) {
+      right.hidden = this.python.place.hidden = this.toml.place.hidden = true;
+      top.classList.add("alone");
+    }
     this.dialog = new Dialog("share", "Share", top, this.python.place, this.toml.place);
   }
 
@@ -70,6 +82,13 @@ export class Share {
     this.blob ??= await this.needs.picture();
     saveFile(this.blob, this.title, "png");
   }
+}
+
+/** @param {() => void} keep */
+function keepButton(keep) {
+  const button = element("button", { type: "button", id: "keep", class: "primary", title: titleOf("keep") }, "Save last minute (replay)");
+  button.addEventListener("click", keep);
+  return button;
 }
 
 /** One line with a button that copies it. @param {string} name @param {string} note */
