@@ -63,7 +63,7 @@ def percus_yevick(
     Examples
     --------
     >>> percus_yevick([0, 6.5], packing_fraction=0.4).round(4)
-    array([0.04  , 1.8687])
+    array([0.04 , 2.006])
     """
     x, phi = 2 * radius * wave_number, packing_fraction
     a = (1 + 2 * phi) ** 2 / (1 - phi) ** 4
