@@ -118,7 +118,7 @@ class TestSteinhardt:
         (BCC, 1, 4, 14, 0.036370, 0.510688),
         (BCC, 1, 4, 8, 0.509175, 0.628539),
         (SC, 1, 5, 6, 0.763763, 0.353553),
-        # By Voronoi's cells: Mickel et al., J. Chem. Phys. 138, 044501 (2013), table I.
+        # By Voronoi's cells, whose faces are one for each of the same neighbours, alike in area.
         (FCC, 1, 4, None, 0.190941, 0.574524),
         (HCP, BRICK, 4, None, 0.097222, 0.484762),
         (SC, 1, 5, None, 0.763763, 0.353553),

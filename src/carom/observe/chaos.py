@@ -95,7 +95,7 @@ class Lyapunov(Observable):
 
         Each collision multiplies that of velocities by about the free path over the diameter, and
         the fastest chain of collisions has four in a mean free time (van Zon, van Beijeren and
-        Dellago, Phys. Rev. Lett. 80, 2035 (1998)). Measured are 0.5 (dense) to 0.9 of that.
+        Dellago, Phys. Rev. Lett. 80, 2035 (1998)). Measured are 0.5 to 0.8 of that.
         """
         time = mean_free_time(state, world)
         return time * GROWTH / (0.4 + 4 * math.log1p(self._speed * time / self._length))

@@ -32,8 +32,8 @@ def percus_yevick(
         a = (1 + 2 phi)^2/(1 - phi)^4,  b = -(1 + phi/2)^2/(1 - phi)^4
 
     and 0 outside. S(0) = (1 - phi)^4/(1 + 2 phi)^2 is too low by 0.2 percent (phi = 0.1), 4 (0.3)
-    and 10 (0.49), compared with the equation of state. The first peak of the dense fluid is a few
-    percent too high.
+    and 10 (0.49), compared with the equation of state. The first peak is some
+    8 percent too high at freezing.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def percus_yevick(
     Examples
     --------
     >>> percus_yevick([0, 6.5], packing_fraction=0.4).round(4)
-    array([0.04  , 1.8687])
+    array([0.04 , 2.006])
     """
     x, phi = 2 * radius * wave_number, packing_fraction
     a = (1 + 2 * phi) ** 2 / (1 - phi) ** 4
