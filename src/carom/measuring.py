@@ -18,6 +18,7 @@ from carom.fit import check_values
 from carom.interrupts import HeldInterrupt
 from carom.kept import Account
 from carom.methods import engine_maker
+from carom.motion import MakeLogging
 from carom.observe.feed import Feed
 from carom.record import Recording, layout, load
 from carom.record.again import engine_at
@@ -105,6 +106,8 @@ class Recorded:
     carom : str
         The version that recorded it.
     world : World
+    make : callable
+        What builds its engines.
     engine : Engine
         As it was at some moment before measuring begins.
     account : Account
@@ -122,6 +125,7 @@ class Recorded:
     path: Path
     carom: str
     world: World
+    make: MakeLogging
     engine: Engine
     account: Account
     events: Iterator[NDArray[Any]]
@@ -146,6 +150,7 @@ def of_events(events: Events) -> Recorded:
         path=events.path,
         carom=about["carom"],
         world=events.world,
+        make=make,
         engine=engine,
         account=Account(math.nan, **before),
         events=events.batches(),
@@ -171,6 +176,7 @@ def of_recording(run: Recording, start: float) -> Recorded:
         path=run.path,
         carom=run.manifest["carom"],
         world=run.segment(place).surroundings.world(),
+        make=engine_maker("exact", 1.0),  # nothing else can be recorded
         engine=engine_at(run, place),
         account=Account(**heads[place]["account"]),
         events=(run.file.events(k) for k in places if k > place),
@@ -189,6 +195,10 @@ class Replay:
         self._snapshot: State | None = None
         self._waiting = np.zeros(0, EVENT)
         self._compared = 0
+
+    def going_on(self, state: State) -> Engine:
+        """Another engine, which goes on from these spheres in this world without any trace."""
+        return self._run.make(state, self.world, False)
 
     @property
     def state(self) -> State:
