@@ -95,6 +95,23 @@ def bouncing_ball(size: float) -> list[Found]:
     return [found]
 
 
+def ball_on_ball(size: float) -> list[Found]:
+    """A ball dropped on the top of a fixed one, off which it bounces straight up."""
+    height, g, below, own, bounces = 1.7, 3.0, 2.0, 0.25, 20
+    sim = Simulation(gravity=(0, 0, -g))
+    sim.add(position=(0, 0, 0), radius=below, fixed=True)
+    sim.add(position=(0, 0, below + own + height), radius=own)
+    sim.run(collisions=bounces)
+    fall = math.sqrt(2 * height / g)
+    found = Found("ball dropped on a fixed ball", 2, bounces)
+    source, last = CLOSED, (2 * bounces - 1) * fall
+    found.exact("top-time", f"time of bounce {bounces}", sim.time, last, 1e-11 * last, source)
+    sim.run(duration=fall)
+    peak = float(sim.position[1, 2]) - below - own
+    found.exact("top-peak", f"height after bounce {bounces}", peak, height, 1e-11, source)
+    return [found]
+
+
 def in_a_box(size: float) -> list[Found]:
     """One ball in a box: its path is a straight line, folded."""
     sides, start, v = np.array([4.0, 5.0, 6.0]), np.array([0.3, -0.9, 1.7]), (1.1, -0.7, 0.45)
@@ -160,6 +177,7 @@ def checks() -> list[Check]:
     return [
         Check("pairs", "pairs", two_bodies, 0.5),
         Check("ball", "ball", bouncing_ball, 0.1),
+        Check("top", "ball", ball_on_ball, 0.1),
         Check("box", "ball", in_a_box, 0.1),
         Check("hollow", "ball", in_a_sphere, 0.2),
         Check("sinai", "sinai", sinai, 2.2, 4),
