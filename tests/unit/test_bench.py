@@ -187,7 +187,17 @@ class TestRun:
         again.measure()
         assert row["answer"] == again.row()["answer"]
         assert row["answer"][0] == 20_000
+        assert row["wrong"] == ""
         json.dumps(row, allow_nan=False)
+
+    def test_a_wrong_answer_is_told_and_the_row_is_kept(self, monkeypatch):
+        monkeypatch.setitem(answers.KNOWN, SMALL.name, (7, 0.5))
+        run = Run(SMALL)
+        run.measure()
+        row = run.row()
+        assert row["nanoseconds"]
+        assert "computes something else" in row["wrong"]
+        assert suite.broken([{**row, "peak_bytes": None}]) == [row["wrong"]]
 
     def test_without_warm_up_each_repetition_begins_anew(self):
         case = cases.Case("small-cloud", 200, None, STARTS["cloud"], collisions=0, until=50.0)

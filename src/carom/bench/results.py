@@ -20,6 +20,7 @@ energy_drift          relative
 max_overlap           in contact distances
 rate                  measured and expected, collisions per sphere and time, with the relative
                       standard error and what is allowed; null where theory knows nothing
+wrong                 a sentence, "" if all answers are right
 uniform, bound        the case it is held against, and how many times its cost is allowed
 ratio, why            how many times its cost it has, by the best repetitions; why it could be more
 most_bytes            bound of peak_bytes

@@ -9,6 +9,7 @@ from carom import mechanics
 from carom.bench import answers, machine
 from carom.bench.cases import Case
 from carom.engine import NO_LIMIT, FastEngine
+from carom.errors import RunError
 from carom.state import State
 from carom.world import World
 
@@ -66,22 +67,20 @@ class Run:
         return met + self._engine.wall_collisions, met, self._engine.time
 
     def row(self) -> dict[str, Any]:
-        """Assert the answers; return what goes into the results.
-
-        Raises
-        ------
-        RunError
-            If an answer is wrong.
-        """
+        """Assert the answers; return what goes into the results, with what is wrong of them."""
         case, peak = self._case, machine.peak_memory()  # the checks take memory of their own
         state = self._engine.state()
         gone = mechanics.energy(state, self._world) + self._engine.dissipated
         drift = gone / self._energy - 1
         overlap = self._engine.max_overlap()
-        answers.assert_kept(case, drift, overlap, self._engine.collisions)
-        answers.assert_known(case, *self._answer)
-        answers.assert_clustered(case, state, self._world)
-        rate = answers.rate(case, state, case.warm_up, self._collisions, self._span)
+        rate, wrong = None, ""
+        try:
+            answers.assert_kept(case, drift, overlap, self._engine.collisions)
+            answers.assert_known(case, *self._answer)
+            answers.assert_clustered(case, state, self._world)
+            rate = answers.rate(case, state, case.warm_up, self._collisions, self._span)
+        except RunError as error:  # the other cases are still worth their time
+            wrong = str(error)
         return {
             "name": case.name,
             "n": case.n,
@@ -95,6 +94,7 @@ class Run:
             "energy_drift": drift,
             "max_overlap": overlap,
             "rate": rate and rate._asdict(),
+            "wrong": wrong,
         }
 
     def profile(self) -> dict[str, Any]:

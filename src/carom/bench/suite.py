@@ -59,7 +59,7 @@ def measured(
     Raises
     ------
     RunError
-        If an answer is wrong.
+        If a process has come to an end.
     """
     rows = []
     whole = sum(_work(case, repetitions, profile) for case in cases)
@@ -113,8 +113,8 @@ def with_bounds(cases: list[Case], rows: list[dict[str, Any]]) -> list[dict[str,
 
 
 def broken(rows: list[dict[str, Any]]) -> list[str]:
-    """A sentence for each bound that a row breaks."""
-    said = []
+    """A sentence for each answer of a row that is wrong, and each bound that it breaks."""
+    said = [row["wrong"] for row in rows if row.get("wrong")]
     for row in rows:
         if row.get("ratio", 0.0) > row.get("bound", 0.0):
             said.append(
