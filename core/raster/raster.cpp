@@ -9,7 +9,7 @@ namespace carom::raster {
 namespace {
 
 // Parts from 0 to 1 as levels from 0 to 255.
-void levels(const std::vector<float>& rgb, uint8_t* bytes) {
+CAROM_WIDE void levels(const std::vector<float>& rgb, uint8_t* bytes) {
     const float* __restrict const from = rgb.data();
     uint8_t* __restrict const to = bytes;
     const size_t n = rgb.size();

@@ -86,7 +86,8 @@ void Shading::collect(const Visibility& seen, int row, const std::vector<Ball>& 
 
 // Light creeps round the edge, where the sphere's own shadow would be hard; so places turned away
 // from the lamp ask nobody.
-void Shading::shadow(Batch& b, const std::vector<Ball>& balls, const Casters& casters) const {
+CAROM_WIDE void Shading::shadow(Batch& b, const std::vector<Ball>& balls,
+                                const Casters& casters) const {
     for (int first = 0, end; first < b.count; first = end) {
         const int who = b.ball[first];
         for (end = first + 1; end < b.count && b.ball[end] == who;) ++end;
@@ -107,8 +108,8 @@ void Shading::shadow(Batch& b, const std::vector<Ball>& balls, const Casters& ca
     }
 }
 
-void Shading::light(Batch& b, const std::vector<Ball>& balls, const Casters& casters,
-                    float* row) const {
+CAROM_WIDE void Shading::light(Batch& b, const std::vector<Ball>& balls, const Casters& casters,
+                               float* row) const {
     // The loops below always run over the whole batch, which compilers do best.
     for (int k = b.count; k < kBatch; ++k) {
         b.ball[k] = b.ball[0], b.x[k] = b.x[0], b.y[k] = b.y[0];

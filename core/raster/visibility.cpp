@@ -48,7 +48,7 @@ void Visibility::clear() {
 }
 
 // Whether all samples around something see what is nearer. distance: that of its nearest point.
-bool Visibility::is_hidden(const Bounds& bounds, float distance) const {
+CAROM_WIDE bool Visibility::is_hidden(const Bounds& bounds, float distance) const {
     const auto least = [](float a, float b) {  // distance of an interval from 0
         return a * b <= 0 ? 0 : std::min(std::abs(a), std::abs(b));
     };
@@ -67,7 +67,7 @@ bool Visibility::is_hidden(const Bounds& bounds, float distance) const {
 // With the ray d = (x, y, 1) and its difference e to the ray through the centre c, the ray meets
 // the sphere where t d² = d·c - sqrt(d² r² - |e × c|²). That root has no small difference of
 // large numbers in it, so single precision will do. All is divided by c.z.
-void Visibility::add(int index, F3 c, float radius) {
+CAROM_WIDE void Visibility::add(int index, F3 c, float radius) {
     if (c.z <= 0.02f * radius || dot(c, c) <= 1.02f * radius * radius) return;
     const float pixel = float(view_.pixel);
     // At least a sample large, or small spheres would come and go.
