@@ -10,6 +10,7 @@ from carom.methods import Method
 from carom.record import load
 from carom.record.again import resume
 from carom.record.recorder import record
+from carom.record.writer import locked
 from carom.running import Running
 from carom.scene import Scene
 
@@ -123,6 +124,9 @@ class Keeping(Running):
         FileError
             If it cannot be read and written, is damaged, or another program writes it now.
         """
+        lock = locked(Path(path))  # what another program has yet to write cannot be read
+        if lock is not None:
+            lock.close()
         sim = cls()
         with load(path) as run:
             recorder = resume(sim._motion, run)

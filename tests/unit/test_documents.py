@@ -25,12 +25,13 @@ def carom_lines() -> list[list[str]]:
     return [shlex.split(line, comments=True) for line in lines]
 
 
-def run_cli(arguments: list[str]) -> tuple[int, str]:
+def run_cli(arguments: list[str], folder: Path) -> tuple[int, str]:
     """Exit status and standard output of `carom ARGUMENTS`."""
     program = "from carom.cli import main; main()"
     done = subprocess.run(
-        [sys.executable, "-c", program, *arguments], capture_output=True, text=True, timeout=120
-    )
+        [sys.executable, "-c", program, *arguments],
+        capture_output=True, text=True, timeout=120, cwd=folder,
+    )  # fmt: skip
     return done.returncode, done.stdout
 
 
@@ -76,10 +77,11 @@ def test_the_readme_has_exactly_two_set_up_lines_and_ci_finds_the_tests() -> Non
 
 
 @pytest.mark.parametrize("arguments", carom_lines(), ids=" ".join)
-def test_the_readme_commands_work(arguments: list[str]) -> None:
-    # `show` and `sketch` serve until Ctrl-C, `bench` takes a minute: here they explain themselves.
-    extra = ["--help"] if arguments[0] in ("show", "sketch", "bench") else []
-    status, output = run_cli([*arguments, *extra])
+def test_the_readme_commands_work(arguments: list[str], tmp_path: Path) -> None:
+    # `show` and `sketch` serve until Ctrl-C, `bench` and `validate` take a minute or two: here they
+    # explain themselves.
+    extra = ["--help"] if arguments[0] in ("show", "sketch", "bench", "validate") else []
+    status, output = run_cli([*arguments, *extra], tmp_path)
     assert status == 0
     assert output
 

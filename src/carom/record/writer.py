@@ -5,7 +5,7 @@ import queue
 import threading
 import time
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from numpy.typing import NDArray
 
@@ -18,6 +18,31 @@ WAITING = 64 * 2**20
 #: takes some 10 ms, whatever there is to bring.
 PATIENCE = 0.1
 _END, _CLOSE = "end of frame", "close"
+
+
+def locked(path: Path) -> IO[bytes] | None:
+    """Keep other programs from recording into this file, which would destroy it; closing lets go.
+
+    Raises
+    ------
+    FileError
+        If another program is writing it.
+    """
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        return None
+    try:
+        lock = path.open("rb")
+    except OSError:  # opening it to write says what is wrong
+        return None
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        lock.close()
+        msg = f"another program is writing {path} now; wait for its end, or end it"
+        raise FileError(msg) from None
+    return lock
 
 
 class Writer:
@@ -40,9 +65,9 @@ class Writer:
 
         self.path = path
         self._safe = ""
-        self._lock: Any = None
+        self._lock: IO[bytes] | None = None
         if mode != "x":
-            self._take_lock()
+            self._lock = locked(path)
         try:
             self._file = gsd.fl.open(
                 name=str(path),
@@ -55,7 +80,7 @@ class Writer:
             self._unlock()
             raise self._refusal(error) from error
         if self._lock is None:
-            self._take_lock()
+            self._lock = locked(path)
         self._sums: dict[str, int] = {}
         self._flushed = 0.0
         self._error: Exception | None = None
@@ -64,24 +89,6 @@ class Writer:
         self._thread = threading.Thread(target=self._work, name="carom recorder", daemon=True)
         self._thread.start()
         atexit.register(self.close)  # a program that ends without close() keeps its frames
-
-    def _take_lock(self) -> None:
-        """Keep other programs from recording into this file, which would destroy it."""
-        try:
-            import fcntl
-        except ImportError:  # Windows
-            return
-        try:
-            self._lock = self.path.open("rb")  # closing it lets go
-            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            self._unlock()
-            msg = f"another program is writing {self.path} now; wait for its end, or end it"
-            raise FileError(msg) from None
-        except FileNotFoundError:  # nothing there to be replaced
-            return
-        except OSError as error:
-            raise self._refusal(error) from error
 
     def _unlock(self) -> None:
         if self._lock is not None:
