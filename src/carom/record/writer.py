@@ -14,9 +14,9 @@ from carom.record import layout
 
 #: Bytes that may wait for the disk; then the engine waits too, so memory stays bounded.
 WAITING = 64 * 2**20
-#: Frames are brought to the disk when no other waits, and at least this often, in seconds: bringing
+#: Frames are brought to the disk at least this often, in seconds; now each is: bringing
 #: takes some 10 ms, whatever there is to bring.
-PATIENCE = 0.1
+PATIENCE = 0.0
 _END, _CLOSE = "end of frame", "close"
 
 
