@@ -3,7 +3,6 @@
 import atexit
 import queue
 import threading
-import time
 from pathlib import Path
 from typing import IO, Any
 
@@ -14,9 +13,6 @@ from carom.record import layout
 
 #: Bytes that may wait for the disk; then the engine waits too, so memory stays bounded.
 WAITING = 64 * 2**20
-#: Frames are brought to the disk at least this often, in seconds; now each is: bringing
-#: takes some 10 ms, whatever there is to bring.
-PATIENCE = 0.0
 _END, _CLOSE = "end of frame", "close"
 
 
@@ -82,7 +78,6 @@ class Writer:
         if self._lock is None:
             self._lock = locked(path)
         self._sums: dict[str, int] = {}
-        self._flushed = 0.0
         self._error: Exception | None = None
         self._queue: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._waiting, self._space = 0, threading.Condition()
@@ -152,11 +147,10 @@ class Writer:
         self._file.write_chunk(layout.CHECKSUMS, layout.as_json(self._sums))
         self._file.end_frame()
         self._sums = {}
-        now = time.monotonic()
-        if self._queue.empty() or now - self._flushed > PATIENCE:
-            self._file.flush()  # without it a kill would lose frames by the thousand
-            self._flushed = now
-            self._safe = f"what was recorded until time {data:.9g} is safe"
+        # Each by itself: of frames brought to the disk together a full disk may spoil all, and a
+        # kill would lose them by the thousand.
+        self._file.flush()
+        self._safe = f"what was recorded until time {data:.9g} is safe"
 
 
 def _size(job: tuple[str, Any]) -> int:
