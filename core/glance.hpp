@@ -5,7 +5,7 @@
 // of a trajectory depends on how glances are compared: with which instructions, in which order.
 #pragma once
 
-#include <algorithm>
+#include <bit>
 #include <cstdint>
 
 #include "vec3.hpp"
@@ -39,12 +39,11 @@ struct Lens {
     double ticks_per_time;  // 1 / (tick * time)
 };
 
-// Steps from the centre of the period, wrapped around. (Of what is too far for `nearest`, and will
-// be solved exactly, it makes some whole number: the order of arguments tells what of a NaN.)
+// Steps from the centre of the period, wrapped around. What is added makes the last bit of the sum
+// a step, so that its lower half counts them. (Of what is too far for that, and will be solved
+// exactly, it makes some whole number.)
 inline int32_t steps(double x, double inverse_period) {
-    const double boxes = x * inverse_period;
-    const double part = std::max(-0.5, std::min(0.5, boxes - nearest(boxes)));
-    return int32_t(uint32_t(int64_t(part * 0x1p32)));
+    return int32_t(uint32_t(std::bit_cast<uint64_t>(x * inverse_period + 0x1.8p20)));
 }
 
 // Who of a row of neighbours may be met first, and before when nobody else is. Times in units of
