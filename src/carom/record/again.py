@@ -83,7 +83,7 @@ def resume(motion: Motion, run: Recording) -> Recorder:
     FileError
         If the file cannot be read or written.
     """
-    writer = Writer(run.path, "r+")
+    writer = Writer(run.path, "r+", frames=len(run.file))
     try:
         recorder = _resumed(motion, run, writer)
     except BaseException:
