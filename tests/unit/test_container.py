@@ -6,7 +6,7 @@ import os
 import gsd.fl
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
@@ -75,6 +75,7 @@ chunks = st.dictionaries(
 )
 
 
+@settings(max_examples=60, deadline=None)
 @given(st.lists(st.tuples(chunks, st.booleans()), max_size=8), st.integers(0, 8))
 def test_package_gsd_reads_what_is_written(tmp_path_factory, frames, cut):
     path = tmp_path_factory.mktemp("gsd") / "file.gsd"

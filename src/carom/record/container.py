@@ -79,7 +79,7 @@ class Container:
     ----------
     path : Path
     frames : int
-        Go on after so many; what there is of later ones is taken out.
+        Go on after so many; what there is of later ones is taken out by the first `commit`.
 
     Raises
     ------
@@ -90,7 +90,7 @@ class Container:
     def __init__(self, path: Path, frames: int) -> None:
         head, index = read_index(path)
         self._head = head.copy()
-        self._listed, listed = begin_of(index, frames), len(index)
+        self._listed, self._torn_end = begin_of(index, frames), len(index)
         del head, index  # some systems do not write to what is mapped
         self._file = path.open("r+b", buffering=0)
         self._end = self._safe_end = self._file.seek(0, os.SEEK_END)
@@ -102,8 +102,6 @@ class Container:
         self._names = {name: number for number, name in enumerate(filter(None, names))}
         self._names_used = sum(len(name) + 1 for name in self._names)
         self._new_names = b""
-        for k in range(listed - 1, self._listed - 1, -1):  # the last first: there is never a gap
-            self._write(self._entry_place(k), bytes(ENTRY.itemsize))
 
     @property
     def ready(self) -> bool:
@@ -132,6 +130,11 @@ class Container:
     def commit(self) -> None:
         """Bring all frames that have ended to the disk, and then into the index."""
         self._sync()
+        while (
+            self._torn_end > self._listed
+        ):  # the last first, so there is never a gap before others
+            self._torn_end -= 1
+            self._write(self._entry_place(self._torn_end), bytes(ENTRY.itemsize))
         entries = np.array(self._ready, ENTRY)
         self._write(self._entry_place(self._listed), entries.tobytes())
         self._listed += len(entries)

@@ -1,6 +1,7 @@
 """A thread that writes chunks to a file, so that the engine need not wait for the disk."""
 
 import atexit
+import errno
 import math
 import queue
 import threading
@@ -19,6 +20,7 @@ from carom.record.container import Container, create
 WAITING = 64 * 2**20
 FRAMES_WAITING = 256  #: frames that may wait, however small: a kill loses them
 GATHERING = 0.1  #: seconds in which frames gather before they are committed; a kill loses them
+FULL = (errno.ENOSPC, errno.EDQUOT)
 _END, _CLOSE = "end of frame", "close"
 
 
@@ -66,7 +68,7 @@ class Writer:
 
     def __init__(self, path: Path, mode: str, frames: int = 0) -> None:
         self.path = path
-        self._safe = ""
+        self._safe = "what it held before is safe" if mode == "r+" else ""
         self._lock: IO[bytes] | None = None
         if mode != "x":
             self._lock = locked(path)
@@ -126,9 +128,9 @@ class Writer:
 
     def _refusal(self, error: Exception) -> FileError:
         reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
-        return FileError(
-            f"cannot write {self.path}: {reason}; {self._safe or 'check the folder and its rights'}"
-        )
+        full = getattr(error, "errno", None) in FULL
+        remedy = "make room on the disk" if full else "check the folder and its rights"
+        return FileError(f"cannot write {self.path}: {reason}; {self._safe or remedy}")
 
     # In the thread.
 
