@@ -256,7 +256,7 @@ def test_a_full_disk_ends_the_run_with_a_sentence_and_what_was_written_is_good(p
 
 @pytest.mark.validate
 def test_a_disk_that_is_full_at_any_size(path):
-    for size in range(300_000, 1_500_000, 15_000):
+    for size in range(300_000, 1_500_000, 30_000):
         filled(path, size)
 
 
