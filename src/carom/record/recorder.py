@@ -55,7 +55,7 @@ class Recorder:
         self._origin, self._step = 0.0, 0
         self._overlap = 0.0
         self._last_time, self._last_checkpoint = math.nan, False
-        self._events: list[NDArray[Any]] = []
+        self._events: list[NDArray[np.uint8]] = []
         self._waiting, self._parts = 0, 0
 
     def begin_file(self, scene: Scene | None) -> None:
@@ -109,15 +109,20 @@ class Recorder:
 
     def events(self, records: NDArray[Any]) -> None:
         """Take what has happened."""
-        self._events.append(records)
+        self._events.append(layout.packed_events(records))
         self._waiting += len(records)
         while self._waiting >= MOST_EVENTS:  # cut at fixed numbers: the file is always the same
-            joined = np.concatenate(self._events)
-            self._write_events(joined[:MOST_EVENTS])
-            self._events, self._waiting = [joined[MOST_EVENTS:]], self._waiting - MOST_EVENTS
+            rows = self._joined_events()
+            self._write_events(rows[:MOST_EVENTS])
+            self._events, self._waiting = [rows[MOST_EVENTS:]], self._waiting - MOST_EVENTS
 
-    def _write_events(self, records: NDArray[Any]) -> None:
-        self._writer.chunk(layout.events_name(self._parts), layout.packed_events(records))
+    def _joined_events(self) -> NDArray[np.uint8]:
+        if len(self._events) == 1:  # as a rule; they are most of what is recorded, and not copied
+            return self._events[0]
+        return np.concatenate([layout.packed_events(np.zeros(0, EVENT)), *self._events])
+
+    def _write_events(self, rows: NDArray[np.uint8]) -> None:
+        self._writer.chunk(layout.events_name(self._parts), rows)
         self._parts += 1
 
     def moment(self, moment: Moment) -> None:
@@ -172,11 +177,11 @@ class Recorder:
             writer.chunk(name, chunk)
         self._opening = []
         if self._waiting or not self._parts:
-            self._write_events(np.concatenate([np.zeros(0, EVENT), *self._events]))
+            self._write_events(self._joined_events())
         self._events, self._waiting, self._parts = [], 0, 0
         if new_spheres:
             self._standing = self._own(hoomd.standing(frame.state))
-        standard = self._standing | self._own(hoomd.moving(frame))
+        standard = self._standing | self._own(hoomd.moving(frame, self._motion.world))
         for name, chunk in standard.items():
             writer.chunk(name, chunk)
         if not self._first:
