@@ -27,7 +27,7 @@ import sys, carom
 sim = carom.Simulation(carom.scenes.gas(n=int(sys.argv[2]), seed=1))
 sim.record(sys.argv[1], every=0.01)
 print("go", flush=True)
-sim.run(until=1e9)
+sim.run(until=1e9, progress=lambda sim: print(sim.time, flush=True))
 """
 
 
@@ -143,7 +143,7 @@ def killed_at_random(path, times, seed):
     for _ in range(times):
         path.unlink(missing_ok=True)
         n = rng.choice([5, 100, 400])
-        killed(path, n, 0.3 * rng.random() ** 2)
+        killed(path, n, 0.8 * rng.random() ** 2)
         with gsd.fl.open(str(path), "r") as file:
             empty = file.nframes == 0  # killed before it could write one
         if empty:
@@ -165,6 +165,17 @@ def killed_at_random(path, times, seed):
 
 def test_killed_at_any_instant_it_can_be_read_and_goes_on(path):
     killed_at_random(path, times=5, seed=1)
+
+
+def test_a_kill_loses_no_more_than_a_moment(path):
+    program = [sys.executable, "-c", ENDLESS, str(path), "5"]  # thousands of frames a second
+    with subprocess.Popen(program, stdout=subprocess.PIPE, text=True) as child:
+        child.stdout.readline()
+        for _ in range(10):
+            then = float(child.stdout.readline())
+        time.sleep(0.5)
+        child.send_signal(signal.SIGKILL)
+    assert carom.load(path).end > then
 
 
 @pytest.mark.validate

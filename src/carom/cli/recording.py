@@ -59,6 +59,7 @@ def described(run: Recording) -> dict[str, Any]:
         "checkpoints": len(checkpoints),
         "last_checkpoint": checkpoints[-1],
         "bytes": size,
+        "thin": False,  # in recordings that do not say
         **run.manifest,
     }
 
@@ -72,7 +73,7 @@ def _table(facts: dict[str, Any]) -> Table:
     sheet.columns[1].style, sheet.columns[1].overflow = "bold", "fold"
     sheet.columns[2].justify, sheet.columns[2].style = "left", "dim"
     sheet.add_row("spheres", report.count(facts["n"]), "")
-    step = f"one every {report.decimal(facts['every'])}"
+    step = f"one every {report.decimal(facts['every'])}" + (" or more" if facts["thin"] else "")
     sheet.add_row("frames", report.count(facts["frames"]), step)
     times = f"{report.decimal(facts['start'])} to {report.decimal(facts['end'])}"
     sheet.add_row("simulated time", times, _changes(facts["changes"]))

@@ -11,7 +11,7 @@ from carom.kept import Account, Start
 from carom.motion import Motion
 from carom.record import layout
 from carom.record.file import File
-from carom.record.recorder import Recorder
+from carom.record.recorder import Recorder, Times
 from carom.record.recording import Recording
 from carom.record.writer import Writer
 
@@ -108,8 +108,10 @@ def _resumed(motion: Motion, run: Recording, writer: Writer) -> Recorder:
         )
         raise InputError(msg)
     _take_up(motion, run, run.heads[place], engine.checkpoint())
-    every, frames = run.manifest["every"], run.manifest["checkpoint_frames"]
-    recorder = Recorder(motion, writer, every, frames)
+    about = run.manifest
+    thin = about.get("thin", False)  # carom 0.1 at first never did
+    times = Times(about["every"], about["checkpoint_frames"], thin)
+    recorder = Recorder(motion, writer, times)
     recorder.go_on(run, last)
     return recorder
 

@@ -54,8 +54,8 @@ def events_name(k: int) -> str:
     return EVENTS if k == 0 else f"{EVENTS}/{k}"
 
 
-def manifest(scene: Scene | None, every: float, checkpoint_frames: int) -> dict[str, Any]:
-    """What is told about how a recording came to be."""
+def manifest(scene: Scene | None, times: dict[str, Any]) -> dict[str, Any]:
+    """What is told about how a recording came to be; `times` of its frames, too."""
     import platform
 
     origin = None if scene is None else scene.origin
@@ -72,8 +72,7 @@ def manifest(scene: Scene | None, every: float, checkpoint_frames: int) -> dict[
         "title": "" if scene is None else scene.title,
         "seed": None if scene is None or scene.seed is None else int(scene.seed),
         "method": "exact",
-        "every": every,
-        "checkpoint_frames": checkpoint_frames,
+        **times,
     }
 
 
