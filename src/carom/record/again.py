@@ -7,6 +7,7 @@ import numpy as np
 
 from carom.engine import NO_LIMIT, FastEngine, Stop
 from carom.errors import InputError
+from carom.event_file.layout import carom_version
 from carom.kept import Account, Start
 from carom.motion import Motion
 from carom.record import layout
@@ -33,7 +34,7 @@ def engine_at(run: Recording, place: int) -> FastEngine:
     except ValueError:
         msg = (
             f"{run.path} was recorded by carom {run.manifest['carom']}, and carom "
-            f"{layout.carom_version()} cannot go on from its checkpoints; use the version that "
+            f"{carom_version()} cannot go on from its checkpoints; use the version that "
             "recorded it"
         )
         raise InputError(msg) from None
@@ -103,7 +104,7 @@ def _resumed(motion: Motion, run: Recording, writer: Writer) -> Recorder:
     if differs:
         msg = (
             f"{run.path} cannot be resumed: from the checkpoint at {run.heads[place]['time']:.9g} "
-            f"carom {layout.carom_version()} on this machine comes to another {differs} than carom "
+            f"carom {carom_version()} on this machine comes to another {differs} than carom "
             f"{run.manifest['carom']} has recorded on {run.manifest['platform']}"
         )
         raise InputError(msg)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import FileError, InputError
+from carom.event_file.layout import carom_version
 from carom.record import layout
 from carom.record.container import MAGIC, begin_of, read_index
 
@@ -55,7 +56,7 @@ class File:
         format_version = self.json(0, layout.MANIFEST)["format"]
         if format_version > layout.FORMAT:
             msg = (
-                f"{path} has format {format_version}, and carom {layout.carom_version()} reads up "
+                f"{path} has format {format_version}, and carom {carom_version()} reads up "
                 f"to {layout.FORMAT}; update carom"
             )
             self.close()

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.event_file.layout import carom_version
 from carom.kept import Surroundings
 from carom.scene import Scene, Spheres
 from carom.state import EVENT, State
@@ -37,16 +38,6 @@ BUILT, SURROUNDINGS = "carom/built", "carom/surroundings"
 CHECKPOINT = "carom/checkpoint"
 # Where a program began to write.
 MANIFEST, SCENE, SPHERES = "carom/manifest", "carom/scene", "carom/spheres"
-
-
-def carom_version() -> str:
-    """The version that is installed."""
-    from importlib.metadata import PackageNotFoundError, version  # takes a tenth of the import
-
-    try:
-        return version("carom")
-    except PackageNotFoundError:
-        return "0+unknown"
 
 
 def events_name(k: int) -> str:

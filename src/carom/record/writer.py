@@ -13,6 +13,7 @@ from typing import IO, Any
 from numpy.typing import NDArray
 
 from carom.errors import FileError
+from carom.event_file.layout import carom_version
 from carom.record import layout
 from carom.record.container import Container, create
 
@@ -74,7 +75,7 @@ class Writer:
             self._lock = locked(path)
         try:
             if mode != "r+":
-                application = f"{layout.APPLICATION} {layout.carom_version()}"
+                application = f"{layout.APPLICATION} {carom_version()}"
                 schema = layout.SCHEMA, layout.SCHEMA_VERSION
                 create(path, mode, application, *schema, first=layout.CHECKSUMS)
             self._file = Container(path, frames)
