@@ -14,6 +14,7 @@ from carom.record import Recording, layout, load
 from carom.record.check import Verdict
 from carom.record.check import check as checked
 from carom.record.convert import convert as converted
+from carom.record.recorder import FILM_FRAMES
 
 DAMAGED = 1  #: exit status
 UNITS = ("bytes", "kB", "MB", "GB", "TB")
@@ -72,7 +73,9 @@ def _table(facts: dict[str, Any]) -> Table:
     sheet.columns[1].style, sheet.columns[1].overflow = "bold", "fold"
     sheet.columns[2].justify, sheet.columns[2].style = "left", "dim"
     sheet.add_row("spheres", report.count(facts["n"]), "")
-    step = f"one every {report.decimal(facts['every'])}" + (" or more" if facts["thin"] else "")
+    step = f"one every {report.decimal(facts['every'])}"
+    if facts["thin"] and facts["frames"] > FILM_FRAMES:
+        step += " or more"
     sheet.add_row("frames", report.count(facts["frames"]), step)
     times = f"{report.decimal(facts['start'])} to {report.decimal(facts['end'])}"
     sheet.add_row("simulated time", times, _changes(facts["changes"]))
