@@ -83,7 +83,8 @@ class Keeping(Running):
         path : str or Path
             By custom it ends in ``.gsd``.
         every : float, optional
-            Simulated time between frames; if left out, thirty pass in a second at `pace`.
+            Simulated time between frames. If left out, thirty pass in a second at `pace`; after
+            300, frames are left out until as many events as spheres have happened.
         checkpoint_every : float, optional
             Simulated time between checkpoints, a multiple of `every`; ten times as long if left
             out.

@@ -49,6 +49,18 @@ def test_the_rate_of_a_resumed_run_is_its_own(cli):
     assert data["collisions_per_second"] == pytest.approx(10 / data["seconds"])
 
 
+def test_a_long_run_of_few_events_makes_a_small_file(cli):
+    status, out, _ = cli("run gas --n 100 --collisions 5000 -o run.gsd")
+    assert status == 0
+    assert "Recorded in run.gsd: " in out
+    facts = json.loads(cli("info run.gsd --json")[1])
+    assert 300 < facts["frames"] < 400
+    assert facts["bytes"] < 10e6
+    assert "one every 0.0666667 or more" in " ".join(cli("info run.gsd")[1].split())
+    cli("run gas --n 100 --until 4 -o short.gsd")
+    assert "or more" not in cli("info short.gsd")[1]
+
+
 def test_info(cli):
     cli("run gas --n 30 --seed 5 --until 2 -o run.gsd --every 0.5")
     status, out, err = cli("info run.gsd")

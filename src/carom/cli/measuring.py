@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
 import carom
 from carom.cli import report
@@ -100,17 +99,9 @@ def _measured(
     quiet: bool,
 ) -> None:
     """Measure, with a progress bar on standard error if somebody looks at it."""
-    console = report.notes()
-    with Progress(
-        TextColumn("{task.description}", style="bold"),
-        BarColumn(bar_width=None),
-        TaskProgressColumn(),
-        TimeRemainingColumn(compact=True),
-        console=console,
-        transient=True,
-        disable=quiet or not console.is_terminal,
-    ) as progress:
-        task = progress.add_task(source.path.name, total=source.end if end is None else end)
+    with report.bar(quiet=quiet) as progress:
+        total = source.end if end is None else end
+        task = progress.add_task(source.path.name, total=total, note="")
         carom.measure(
             source,
             list(observed.values()),

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from carom.cli import report
@@ -15,6 +14,7 @@ from carom.record import Recording, layout, load
 from carom.record.check import Verdict
 from carom.record.check import check as checked
 from carom.record.convert import convert as converted
+from carom.record.recorder import FILM_FRAMES
 
 DAMAGED = 1  #: exit status
 UNITS = ("bytes", "kB", "MB", "GB", "TB")
@@ -59,6 +59,7 @@ def described(run: Recording) -> dict[str, Any]:
         "checkpoints": len(checkpoints),
         "last_checkpoint": checkpoints[-1],
         "bytes": size,
+        "thin": False,  # in recordings that do not say
         **run.manifest,
     }
 
@@ -73,6 +74,8 @@ def _table(facts: dict[str, Any]) -> Table:
     sheet.columns[2].justify, sheet.columns[2].style = "left", "dim"
     sheet.add_row("spheres", report.count(facts["n"]), "")
     step = f"one every {report.decimal(facts['every'])}"
+    if facts["thin"] and facts["frames"] > FILM_FRAMES:
+        step += " or more"
     sheet.add_row("frames", report.count(facts["frames"]), step)
     times = f"{report.decimal(facts['start'])} to {report.decimal(facts['end'])}"
     sheet.add_row("simulated time", times, _changes(facts["changes"]))
@@ -158,15 +161,6 @@ def convert(
 @contextmanager
 def _progress(label: str, *, quiet: bool) -> Iterator[Callable[[int, int], None]]:
     """A progress bar on standard error, if somebody looks at it."""
-    console = report.notes()
-    with Progress(
-        TextColumn("{task.description}", style="bold"),
-        BarColumn(bar_width=None),
-        TaskProgressColumn(),
-        TimeRemainingColumn(compact=True),
-        console=console,
-        transient=True,
-        disable=quiet or not console.is_terminal,
-    ) as bar:
-        task = bar.add_task(label)
+    with report.bar(quiet=quiet) as bar:
+        task = bar.add_task(label, note="")
         yield lambda done, total: bar.update(task, completed=done, total=total)

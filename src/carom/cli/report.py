@@ -49,27 +49,32 @@ def write_json(data: Any) -> None:
     output().print(json.dumps(data, allow_nan=False), soft_wrap=True, markup=False)
 
 
+def bar(*, quiet: bool) -> Progress:
+    """A progress bar on standard error, if somebody looks at it; a task has a `note` beside it."""
+    console = notes()
+    return Progress(
+        TextColumn("{task.description}", style="bold"),
+        BarColumn(bar_width=None),
+        TaskProgressColumn(),
+        TextColumn("{task.fields[note]}", style="cyan"),
+        TimeRemainingColumn(compact=True),
+        console=console,
+        transient=True,
+        disable=quiet or not console.is_terminal,
+    )
+
+
 @contextmanager
 def progress(what: str, *, quiet: bool) -> Iterator[Callable[[str, str, float], None]]:
     """A progress bar on standard error, if somebody looks at it.
 
     What it hands over is told of each step: what is done, whose, its share of the whole.
     """
-    console = notes()
-    with Progress(
-        TextColumn("{task.description}", style="bold"),
-        BarColumn(bar_width=None),
-        TaskProgressColumn(),
-        TextColumn("{task.fields[step]}", style="cyan"),
-        TimeRemainingColumn(compact=True),
-        console=console,
-        transient=True,
-        disable=quiet or not console.is_terminal,
-    ) as bar:
-        task = bar.add_task(what, total=1.0, step="")
+    with bar(quiet=quiet) as shown:
+        task = shown.add_task(what, total=1.0, note="")
 
         def tell(step: str, name: str, share: float) -> None:
-            bar.update(task, advance=share, step=f"{name} {step}")
+            shown.update(task, advance=share, note=f"{name} {step}")
 
         yield tell
 

@@ -23,7 +23,9 @@ Output = Annotated[
 ]
 Every = Annotated[
     str | None,
-    typer.Option(metavar="TIME", help="Between recorded frames; 1/30 of the pace if left out."),
+    typer.Option(
+        metavar="TIME", help="Between recorded frames; 1/30 of the pace if left out, later more."
+    ),
 ]
 CheckpointEvery = Annotated[
     str | None,

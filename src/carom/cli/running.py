@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from rich.console import Group
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
 import carom
@@ -80,18 +79,8 @@ def execute(
     sim: Simulation, aim: Goal, *, quiet: bool, label: str, observe: Sequence[Observable] = ()
 ) -> Outcome:
     """Run with a progress bar on standard error, if somebody looks at it."""
-    console = report.notes()
-    with Progress(
-        TextColumn("{task.description}", style="bold"),
-        BarColumn(bar_width=None),
-        TaskProgressColumn(),
-        TextColumn("{task.fields[hits]}", style="cyan"),
-        TimeRemainingColumn(compact=True),
-        console=console,
-        transient=True,
-        disable=quiet or not console.is_terminal,
-    ) as progress:
-        task = progress.add_task(label, total=aim.value, hits="")
+    with report.bar(quiet=quiet) as progress:
+        task = progress.add_task(label, total=aim.value, note="")
         begin = time.perf_counter()
         before = sim.collisions
         start = 0.0 if aim.name == "until" else _done(sim, aim.name)
@@ -99,7 +88,7 @@ def execute(
         def show(now: Simulation) -> None:
             speed = (now.collisions - before) / max(time.perf_counter() - begin, 1e-9)
             hits = f"{report.count(now.collisions)} collisions, {report.rate(speed)}/s"
-            progress.update(task, completed=_done(now, aim.name) - start, hits=hits)
+            progress.update(task, completed=_done(now, aim.name) - start, note=hits)
 
         try:
             sim.run(duration=0)  # builds the engine, so that the clock measures collisions only

@@ -45,6 +45,16 @@ MEANING = {
 }
 
 
+def carom_version() -> str:
+    """The version that is installed."""
+    from importlib.metadata import PackageNotFoundError, version  # takes a tenth of the import
+
+    try:
+        return version("carom")
+    except PackageNotFoundError:  # run from the source tree
+        return "0+unknown"
+
+
 def columns(records: NDArray[Any]) -> dict[str, NDArray[Any]]:
     """The columns of a file from (n,) EVENT."""
     result = {name: np.ascontiguousarray(records[name]) for name in ("time", "i", "j")}

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import FileError
-from carom.event_file.layout import FORMAT, GROUP, KINDS, MEANING, VERSION, packed
+from carom.event_file.layout import FORMAT, GROUP, KINDS, MEANING, VERSION, carom_version, packed
 from carom.event_file.npz import NpzSink
 from carom.event_file.parquet import ParquetSink
 from carom.event_file.source import ENDINGS, ending
@@ -188,11 +188,5 @@ class EventRecorder:
 
 def about_file() -> dict[str, Any]:
     """What every event file says of itself."""
-    from importlib.metadata import PackageNotFoundError, version  # takes a tenth of the import
-
-    try:
-        carom = version("carom")
-    except PackageNotFoundError:  # run from the source tree
-        carom = "0+unknown"
-    known = {"format": FORMAT, "version": VERSION, "carom": carom}
+    known = {"format": FORMAT, "version": VERSION, "carom": carom_version()}
     return known | {"columns": MEANING, "kinds": list(KINDS)}

@@ -7,11 +7,12 @@ import numpy as np
 
 from carom.engine import NO_LIMIT, FastEngine, Stop
 from carom.errors import InputError
+from carom.event_file.layout import carom_version
 from carom.kept import Account, Start
 from carom.motion import Motion
 from carom.record import layout
 from carom.record.file import File
-from carom.record.recorder import Recorder
+from carom.record.recorder import Recorder, Times
 from carom.record.recording import Recording
 from carom.record.writer import Writer
 
@@ -33,7 +34,7 @@ def engine_at(run: Recording, place: int) -> FastEngine:
     except ValueError:
         msg = (
             f"{run.path} was recorded by carom {run.manifest['carom']}, and carom "
-            f"{layout.carom_version()} cannot go on from its checkpoints; use the version that "
+            f"{carom_version()} cannot go on from its checkpoints; use the version that "
             "recorded it"
         )
         raise InputError(msg) from None
@@ -83,7 +84,7 @@ def resume(motion: Motion, run: Recording) -> Recorder:
     FileError
         If the file cannot be read or written.
     """
-    writer = Writer(run.path, "r+")
+    writer = Writer(run.path, "r+", frames=len(run.file))
     try:
         recorder = _resumed(motion, run, writer)
     except BaseException:
@@ -103,13 +104,15 @@ def _resumed(motion: Motion, run: Recording, writer: Writer) -> Recorder:
     if differs:
         msg = (
             f"{run.path} cannot be resumed: from the checkpoint at {run.heads[place]['time']:.9g} "
-            f"carom {layout.carom_version()} on this machine comes to another {differs} than carom "
+            f"carom {carom_version()} on this machine comes to another {differs} than carom "
             f"{run.manifest['carom']} has recorded on {run.manifest['platform']}"
         )
         raise InputError(msg)
     _take_up(motion, run, run.heads[place], engine.checkpoint())
-    every, frames = run.manifest["every"], run.manifest["checkpoint_frames"]
-    recorder = Recorder(motion, writer, every, frames)
+    about = run.manifest
+    thin = about.get("thin", False)  # carom 0.1 at first never did
+    times = Times(about["every"], about["checkpoint_frames"], thin)
+    recorder = Recorder(motion, writer, times)
     recorder.go_on(run, last)
     return recorder
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from carom.errors import InputError
+from carom.event_file.layout import carom_version
 from carom.record import layout
 from carom.record.again import difference, engine_at, reach
 from carom.record.file import Damaged, File
@@ -123,7 +124,7 @@ def _follow(run: Recording, begin: int, end: int) -> Iterator[tuple[int, int]]:
         if differs:
             msg = (
                 f"frame {place}, time {head['time']:.9g}: {differs} as recorded by carom "
-                f"{run.manifest['carom']} differs from what carom {layout.carom_version()} "
+                f"{run.manifest['carom']} differs from what carom {carom_version()} "
                 "comes to on this machine"
             )
             raise InputError(msg)

@@ -9,7 +9,7 @@ import numpy as np
 
 from carom.checks import nearest
 from carom.errors import FileError, InputError, UnknownNameError
-from carom.event_file.layout import packed
+from carom.event_file.layout import carom_version, packed
 from carom.event_file.recorder import OpenFile, about_file
 from carom.event_file.source import ENDINGS
 from carom.frame import Frame
@@ -122,7 +122,7 @@ def _h5md_head(file: Any) -> None:
     head.create_group("author").attrs["name"] = np.bytes_("unknown")
     creator = head.create_group("creator")
     creator.attrs["name"] = np.bytes_("carom")
-    creator.attrs["version"] = np.bytes_(layout.carom_version())
+    creator.attrs["version"] = np.bytes_(carom_version())
 
 
 def _h5md_frames(group: Any, run: Recording, progress: Progress) -> None:

@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom.errors import FileError, InputError
+from carom.event_file.layout import carom_version
 from carom.record import layout
+from carom.record.container import MAGIC, begin_of, read_index
 
 #: What reading a chunk of a damaged file may raise; its size, too, may be nonsense.
 _UNREADABLE = (KeyError, MemoryError, OSError, RuntimeError, TypeError, ValueError)
@@ -37,7 +39,10 @@ class File:
         self.path = Path(path)
         self._gsd = _opened(self.path)
         self._sums: dict[int, dict[str, int]] = {}
-        if self._gsd.nframes == 0:
+        self._frames = int(self._gsd.nframes)
+        if self._frames > 0 and self._cut_off():
+            self._frames -= 1
+        if self._frames == 0:
             msg = f"{path} is a recording without a frame: nothing was written before it ended"
             self.close()
             raise FileError(msg)
@@ -51,18 +56,28 @@ class File:
         format_version = self.json(0, layout.MANIFEST)["format"]
         if format_version > layout.FORMAT:
             msg = (
-                f"{path} has format {format_version}, and carom {layout.carom_version()} reads up "
+                f"{path} has format {format_version}, and carom {carom_version()} reads up "
                 f"to {layout.FORMAT}; update carom"
             )
             self.close()
             raise InputError(msg)
 
     def __len__(self) -> int:
-        return int(self._gsd.nframes)
+        return self._frames
 
     def close(self) -> None:
         """Let go of the file."""
         self._gsd.close()
+
+    def _cut_off(self) -> bool:
+        """Whether a kill has kept the last frame from coming into the index whole."""
+        last = self._frames - 1
+        try:
+            complete = len(self.sums(last)) + 1
+        except Damaged:  # whoever reads it is told
+            return False
+        _, index = read_index(self.path)
+        return len(index) - begin_of(index, last) < complete
 
     def names(self, frame: int) -> list[str]:
         """Names of the chunks that a frame has, as the file's index says."""
@@ -137,11 +152,8 @@ def _opened(path: Path) -> Any:
         msg = f"cannot read {path}: {error.strerror or error}; check the name and its permissions"
         raise FileError(msg) from error
     except RuntimeError as error:
-        if not path.read_bytes()[:8].startswith(_MAGIC):
+        if not path.read_bytes()[:8].startswith(MAGIC.to_bytes(8, "little")):
             msg = f"{path} is no recording (no GSD file); give one that carom has recorded"
             raise InputError(msg) from None
         msg = f"{path} is cut short or damaged ({error}); take another copy"
         raise Damaged(msg) from None
-
-
-_MAGIC = (0x65DF65DF65DF65DF).to_bytes(8, "little")

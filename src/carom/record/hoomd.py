@@ -27,14 +27,14 @@ def standing(state: State) -> Chunks:
         }
 
 
-def moving(frame: Frame) -> Chunks:
-    """What it says of an instant, in single precision; `image` is exact."""
+def moving(frame: Frame, world: World) -> Chunks:
+    """What it says of an instant in a world, in single precision; `image` is exact."""
     state = frame.state
     events = frame.collisions + frame.wall_collisions
     with np.errstate(over="ignore"):
         return {
             "configuration/step": np.array([events], np.uint64),
-            "configuration/box": np.array([*lengths(state, frame.world), 0, 0, 0], np.float32),
+            "configuration/box": np.array([*lengths(state, world), 0, 0, 0], np.float32),
             "particles/position": state.position.astype(np.float32),
             "particles/velocity": state.velocity.astype(np.float32),
             "particles/image": np.ascontiguousarray(state.image, np.int32),

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from carom.event_file.layout import carom_version
 from carom.kept import Surroundings
 from carom.scene import Scene, Spheres
 from carom.state import EVENT, State
@@ -39,23 +40,13 @@ CHECKPOINT = "carom/checkpoint"
 MANIFEST, SCENE, SPHERES = "carom/manifest", "carom/scene", "carom/spheres"
 
 
-def carom_version() -> str:
-    """The version that is installed."""
-    from importlib.metadata import PackageNotFoundError, version  # takes a tenth of the import
-
-    try:
-        return version("carom")
-    except PackageNotFoundError:
-        return "0+unknown"
-
-
 def events_name(k: int) -> str:
     """The chunk of the k-th part of a frame's events."""
     return EVENTS if k == 0 else f"{EVENTS}/{k}"
 
 
-def manifest(scene: Scene | None, every: float, checkpoint_frames: int) -> dict[str, Any]:
-    """What is told about how a recording came to be."""
+def manifest(scene: Scene | None, times: dict[str, Any]) -> dict[str, Any]:
+    """What is told about how a recording came to be; `times` of its frames, too."""
     import platform
 
     origin = None if scene is None else scene.origin
@@ -72,8 +63,7 @@ def manifest(scene: Scene | None, every: float, checkpoint_frames: int) -> dict[
         "title": "" if scene is None else scene.title,
         "seed": None if scene is None or scene.seed is None else int(scene.seed),
         "method": "exact",
-        "every": every,
-        "checkpoint_frames": checkpoint_frames,
+        **times,
     }
 
 

@@ -3,7 +3,7 @@
 import math
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +21,19 @@ from carom.state import EVENT
 
 FRAMES_PER_SECOND = 30  #: at the scene's pace, where nothing else is asked for
 CHECKPOINT_FRAMES = 10  #: frames from one checkpoint to the next, likewise
+#: Likewise, after so many frames another must be worth its room: as many events as spheres must
+#: have happened since the one before, and so many at least.
+FILM_FRAMES, WORTH_A_FRAME = 300, 100
 #: Events in a chunk, 10 MB. They go to the file when so many are there, so memory is bounded.
 MOST_EVENTS = 2**18
+
+
+class Times(NamedTuple):
+    """When there are frames and checkpoints."""
+
+    every: float  #: simulated time between frames
+    checkpoint_frames: int  #: each so many frames there is a checkpoint
+    thin: bool  #: whether frames are left out of a long run where little happens between them
 
 
 class Recorder:
@@ -35,39 +46,33 @@ class Recorder:
     ----------
     motion : Motion
     writer : Writer
-    every : float
-        Simulated time between frames.
-    checkpoint_frames : int
-        Each so many frames there is a checkpoint.
+    times : Times
     """
 
     takes_events = True
 
-    def __init__(
-        self, motion: Motion, writer: Writer, every: float, checkpoint_frames: int
-    ) -> None:
-        self._motion, self._writer = motion, writer
-        self._every, self._checkpoint_frames = every, checkpoint_frames
+    def __init__(self, motion: Motion, writer: Writer, times: Times) -> None:
+        self._motion, self._writer, self._times = motion, writer, times
         self._opening: list[tuple[str, NDArray[Any]]] = []  # goes into the next frame
         self._first: hoomd.Chunks = {}  # of the file's first frame
         self._standing: hoomd.Chunks = {}
         self._segment, self._open = -1, False
-        self._origin, self._step = 0.0, 0
+        self._origin, self._step, self._frames = 0.0, 0, 0
         self._overlap = 0.0
         self._last_time, self._last_checkpoint = math.nan, False
-        self._events: list[NDArray[Any]] = []
+        self._events: list[NDArray[np.uint8]] = []
         self._waiting, self._parts = 0, 0
 
     def begin_file(self, scene: Scene | None) -> None:
         """Put into the first frame what a new file begins with."""
-        about = layout.manifest(scene, self._every, self._checkpoint_frames)
+        about = layout.manifest(scene, self._times._asdict())
         self._opening = [(layout.MANIFEST, layout.as_json(about))]
         if scene is not None:
             self._opening += layout.packed_scene(scene)
 
     def go_on(self, run: Recording, place: int) -> None:
         """Go on with a file from its last frame, at which the motion is now."""
-        about = layout.manifest(run.scene, self._every, self._checkpoint_frames)
+        about = layout.manifest(run.scene, self._times._asdict())
         self._opening = [(layout.MANIFEST, layout.as_json(about))]
         head = run.heads[place]
         self._segment, self._origin = head["segment"], head["origin"]
@@ -77,15 +82,16 @@ class Recorder:
         self._standing = self._own(hoomd.standing(self._motion.state))
         self._last_checkpoint = run.file.has(place, layout.CHECKPOINT)
         self._open, self._last_time = True, self._motion.time
+        self._frames = len(run.heads)
         self._next_step()
 
     @property
     def due(self) -> float:
         """Time of the next frame: a whole number of intervals after the first."""
-        return self._origin + self._step * self._every
+        return self._origin + self._step * self._times.every
 
     def _next_step(self) -> None:
-        self._step = max(0, math.floor((self._motion.time - self._origin) / self._every))
+        self._step = max(0, math.floor((self._motion.time - self._origin) / self._times.every))
         while self.due <= self._motion.time:
             self._step += 1
 
@@ -109,22 +115,34 @@ class Recorder:
 
     def events(self, records: NDArray[Any]) -> None:
         """Take what has happened."""
-        self._events.append(records)
+        self._events.append(layout.packed_events(records))
         self._waiting += len(records)
         while self._waiting >= MOST_EVENTS:  # cut at fixed numbers: the file is always the same
-            joined = np.concatenate(self._events)
-            self._write_events(joined[:MOST_EVENTS])
-            self._events, self._waiting = [joined[MOST_EVENTS:]], self._waiting - MOST_EVENTS
+            rows = self._joined_events()
+            self._write_events(rows[:MOST_EVENTS])
+            self._events, self._waiting = [rows[MOST_EVENTS:]], self._waiting - MOST_EVENTS
 
-    def _write_events(self, records: NDArray[Any]) -> None:
-        self._writer.chunk(layout.events_name(self._parts), layout.packed_events(records))
+    def _joined_events(self) -> NDArray[np.uint8]:
+        if len(self._events) == 1:  # as a rule; they are most of what is recorded, and not copied
+            return self._events[0]
+        return np.concatenate([layout.packed_events(np.zeros(0, EVENT)), *self._events])
+
+    def _write_events(self, rows: NDArray[np.uint8]) -> None:
+        self._writer.chunk(layout.events_name(self._parts), rows)
         self._parts += 1
 
     def moment(self, moment: Moment) -> None:
         """Write a frame, if it is time for one."""
         if self._motion.time >= self.due:
-            self._write(checkpoint=self._step % self._checkpoint_frames == 0)
+            if self._worth_a_frame():
+                turn = self._frames if self._times.thin else self._step
+                self._write(checkpoint=turn % self._times.checkpoint_frames == 0)
             self._next_step()
+
+    def _worth_a_frame(self) -> bool:
+        events = self._waiting + self._parts * MOST_EVENTS
+        enough = max(WORTH_A_FRAME, len(self._motion.state))
+        return not self._times.thin or self._frames < FILM_FRAMES or events >= enough
 
     def end(self, moment: Moment) -> None:
         """Wait for the next run; the same bits can be had from the last checkpoint."""
@@ -172,11 +190,11 @@ class Recorder:
             writer.chunk(name, chunk)
         self._opening = []
         if self._waiting or not self._parts:
-            self._write_events(np.concatenate([np.zeros(0, EVENT), *self._events]))
+            self._write_events(self._joined_events())
         self._events, self._waiting, self._parts = [], 0, 0
         if new_spheres:
             self._standing = self._own(hoomd.standing(frame.state))
-        standard = self._standing | self._own(hoomd.moving(frame))
+        standard = self._standing | self._own(hoomd.moving(frame, self._motion.world))
         for name, chunk in standard.items():
             writer.chunk(name, chunk)
         if not self._first:
@@ -204,10 +222,11 @@ class Recorder:
         writer.chunk(layout.HEAD, layout.as_json(head))
         writer.end_frame(frame.time)
         self._last_time, self._last_checkpoint = frame.time, checkpoint
+        self._frames += 1
 
 
-def intervals(every: Any, checkpoint_every: Any, pace: float) -> tuple[float, int]:
-    """Time between frames, and frames between checkpoints, from what a user gives or leaves out.
+def times_of(every: Any, checkpoint_every: Any, pace: float) -> Times:
+    """When there are frames and checkpoints, from what a user gives or leaves out.
 
     Raises
     ------
@@ -216,7 +235,7 @@ def intervals(every: Any, checkpoint_every: Any, pace: float) -> tuple[float, in
     """
     step = pace / FRAMES_PER_SECOND if every is None else number("every", every, above=0)
     if checkpoint_every is None:
-        return step, CHECKPOINT_FRAMES
+        return Times(step, CHECKPOINT_FRAMES, thin=every is None)
     frames = number("checkpoint_every", checkpoint_every, above=0) / step
     if round(frames) < 1 or abs(frames - round(frames)) > 1e-6 * frames:
         msg = (
@@ -224,7 +243,7 @@ def intervals(every: Any, checkpoint_every: Any, pace: float) -> tuple[float, in
             f"{step:g}; give a multiple of that"
         )
         raise InputError(msg)
-    return step, round(frames)
+    return Times(step, round(frames), thin=False)
 
 
 def record(
@@ -246,13 +265,13 @@ def record(
         If the file cannot be written.
     """
     target = Path(path)
-    step, frames = intervals(every, checkpoint_every, 1.0 if scene is None else scene.pace)
+    times = times_of(every, checkpoint_every, 1.0 if scene is None else scene.pace)
     if target.exists() and not overwrite:
         msg = (
             f"{target} is there already; give another name, allow it to be overwritten, or go on "
             "with it by resuming"
         )
         raise InputError(msg)
-    recorder = Recorder(motion, Writer(target, "w" if overwrite else "x"), step, frames)
+    recorder = Recorder(motion, Writer(target, "w" if overwrite else "x"), times)
     recorder.begin_file(scene)
     return recorder

@@ -1,18 +1,27 @@
 """A thread that writes chunks to a file, so that the engine need not wait for the disk."""
 
 import atexit
+import errno
+import math
 import queue
 import threading
+import time
+from contextlib import suppress
 from pathlib import Path
 from typing import IO, Any
 
 from numpy.typing import NDArray
 
 from carom.errors import FileError
+from carom.event_file.layout import carom_version
 from carom.record import layout
+from carom.record.container import Container, create
 
 #: Bytes that may wait for the disk; then the engine waits too, so memory stays bounded.
 WAITING = 64 * 2**20
+FRAMES_WAITING = 256  #: frames that may wait, however small: a kill loses them
+GATHERING = 0.1  #: seconds in which frames gather before they are committed; a kill loses them
+FULL = (errno.ENOSPC, errno.EDQUOT)
 _END, _CLOSE = "end of frame", "close"
 
 
@@ -49,6 +58,8 @@ class Writer:
     path : Path
     mode : str
         "x" makes a new file, "w" replaces one, "r+" goes on with one.
+    frames : int
+        Of a file that is gone on with.
 
     Raises
     ------
@@ -56,28 +67,26 @@ class Writer:
         If the file cannot be written; later calls raise it too.
     """
 
-    def __init__(self, path: Path, mode: str) -> None:
-        import gsd.fl
-
+    def __init__(self, path: Path, mode: str, frames: int = 0) -> None:
         self.path = path
-        self._safe = ""
+        self._safe = "what it held before is safe" if mode == "r+" else ""
         self._lock: IO[bytes] | None = None
         if mode != "x":
             self._lock = locked(path)
         try:
-            self._file = gsd.fl.open(
-                name=str(path),
-                mode=mode,
-                application=f"{layout.APPLICATION} {layout.carom_version()}",
-                schema=layout.SCHEMA,
-                schema_version=layout.SCHEMA_VERSION,
-            )
-        except (OSError, RuntimeError) as error:
+            if mode != "r+":
+                application = f"{layout.APPLICATION} {carom_version()}"
+                schema = layout.SCHEMA, layout.SCHEMA_VERSION
+                create(path, mode, application, *schema, first=layout.CHECKSUMS)
+            self._file = Container(path, frames)
+        except OSError as error:
             self._unlock()
             raise self._refusal(error) from error
         if self._lock is None:
             self._lock = locked(path)
         self._sums: dict[str, int] = {}
+        self._moment = 0.0  # of the last frame that is whole
+        self._committed, self._due = -math.inf, math.inf  # the last time, and the next
         self._error: Exception | None = None
         self._queue: queue.SimpleQueue[Any] = queue.SimpleQueue()
         self._waiting, self._space = 0, threading.Condition()
@@ -120,38 +129,66 @@ class Writer:
 
     def _refusal(self, error: Exception) -> FileError:
         reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
-        return FileError(
-            f"cannot write {self.path}: {reason}; {self._safe or 'check the folder and its rights'}"
-        )
+        full = getattr(error, "errno", None) in FULL
+        remedy = "make room on the disk" if full else "check the folder and its rights"
+        return FileError(f"cannot write {self.path}: {reason}; {self._safe or remedy}")
+
+    # In the thread.
 
     def _work(self) -> None:
-        job: tuple[str, Any] = ("", None)
-        while job[0] != _CLOSE:
-            job = self._queue.get()
+        job: tuple[str, Any] | None = None
+        while job is None or job[0] != _CLOSE:
+            job = self._next()
             try:
-                if job[0] == _CLOSE:
-                    self._file.close()
-                elif self._error is None:  # otherwise it only makes place
+                if job is not None and self._error is None:  # otherwise it only makes place
                     self._do(*job)
-            except Exception as error:  # whoever puts or closes next raises it
-                self._error = self._error or error
-            with self._space:
-                self._waiting -= _size(job)
-                self._space.notify()
+                if time.monotonic() >= self._due:
+                    self._commit()
+            except Exception as error:
+                self._fail(error)
+            if job is not None:
+                with self._space:
+                    self._waiting -= _size(job)
+                    self._space.notify()
+
+    def _next(self) -> tuple[str, Any] | None:
+        """Wait for the next job, but no longer than frames may wait."""
+        left = None if self._due == math.inf else max(0.0, self._due - time.monotonic())
+        with suppress(queue.Empty):
+            found: tuple[str, Any] = self._queue.get(timeout=left)
+            return found
+        return None
 
     def _do(self, name: str, data: Any) -> None:
-        if name != _END:
-            self._file.write_chunk(name, data)
+        if name == _CLOSE:
+            self._commit()
+            self._file.close()
+        elif name != _END:
+            self._file.chunk(name, data)
             self._sums[name] = layout.checksum(name, data)
-            return
-        self._file.write_chunk(layout.CHECKSUMS, layout.as_json(self._sums))
-        self._file.end_frame()
-        self._sums = {}
-        # Each by itself: of frames brought to the disk together a full disk may spoil all, and a
-        # kill would lose them by the thousand.
-        self._file.flush()
-        self._safe = f"what was recorded until time {data:.9g} is safe"
+        else:
+            self._file.chunk(layout.CHECKSUMS, layout.as_json(self._sums))
+            self._file.end_frame()
+            self._sums, self._moment = {}, data
+            self._due = min(self._due, self._committed + GATHERING)
+
+    def _commit(self) -> None:
+        self._due = math.inf
+        if self._file.ready:
+            self._file.commit()
+            self._committed = time.monotonic()
+            self._safe = f"what was recorded until time {self._moment:.9g} is safe"
+
+    def _fail(self, error: Exception) -> None:
+        """Keep what can be kept; whoever puts or closes next is told."""
+        self._due = math.inf
+        for keep in (self._commit, self._file.close):
+            with suppress(Exception):
+                keep()
+        self._error = error
 
 
 def _size(job: tuple[str, Any]) -> int:
+    if job[0] == _END:
+        return WAITING // FRAMES_WAITING
     return 1000 + getattr(job[1], "nbytes", 0)
