@@ -29,6 +29,7 @@ def portrait(sim: Viewable, state: State, key: int) -> dict[str, Any]:
         "wire": bool(scene.wire) if scene else False,
         "color": scene.color if scene else "own",
         "collide": bool(world.collide),
+        "restitution": float(world.restitution),
         "camera": None
         if camera is None
         else {"position": list(camera.position), "target": list(camera.target)},
@@ -39,6 +40,7 @@ def portrait(sim: Viewable, state: State, key: int) -> dict[str, Any]:
                 "kind": int(wall["kind"]),
                 "normal": wall["normal"].tolist(),
                 "offset": float(wall["offset"]),
+                "restitution": float(wall["restitution"]),
                 "name": name.removeprefix("the "),
             }
             for wall, name in zip(world.walls, wall_names(sim.walls), strict=True)

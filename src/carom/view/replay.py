@@ -251,8 +251,7 @@ def pack(
         np.array(counts, np.uint32),
         speed,
     )
-    smallest = float(first.state.radius.min(initial=np.inf))
-    return encode(reel, about["period"], smallest), about["title"] or "carom"
+    return encode(reel), about["title"] or "carom"
 
 
 def _row(frame: Instant) -> list[float]:

@@ -24,6 +24,7 @@
  * @property {boolean} wire
  * @property {ColorMode} color
  * @property {boolean} collide
+ * @property {number} restitution
  * @property {{position: number[], target: number[]} | null} camera
  * @property {number[]} period
  * @property {number[]} gravity
