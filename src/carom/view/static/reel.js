@@ -29,7 +29,7 @@ class Guide {
     this.v = new Float64Array(3 * n);
     this.fall = new Float64Array(3 * n);
     this.rest = new Float64Array(n); // time from a sphere's last impact until the frame
-    this.counts = new Uint32Array(n);
+    /** @type {Uint32Array} */ this.counts = new Uint32Array(n);
   }
 
   /**
