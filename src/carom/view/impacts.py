@@ -20,6 +20,7 @@ from carom.world import PLANE
 
 LATE = 1.1  #: of the time between frames: an impact that seems due a little later has happened too
 ROUNDS = 32  #: of impacts between two frames; later ones are not foretold
+STRIPS = 256.0  #: where there is no period; strips that many further on are the same again
 
 Indices = NDArray[np.int64]
 
@@ -84,30 +85,36 @@ class Impacts:
         return x, v, rest
 
     def _near(self, flight: "_Flight", radius: Floats, step: float) -> Indices:
-        """Pairs of spheres that may meet: one sweep along the longest side."""
+        """Pairs of spheres that may meet, some of them twice: sweeps along strips of the world."""
         pull, speed = _size(flight.fall), _size(flight.v)
         # A sphere may be struck, and then be faster.
         fast = np.sort(speed)[9 * len(speed) // 10]
         reach = radius + step * (speed + fast + pull * step)
         side = flight.x.max(axis=1) - flight.x.min(axis=1)
-        axis = int(np.argmax(side))
-        low, high = flight.x[axis] - reach, flight.x[axis] + reach
+        along, across, _ = np.argsort(-side, kind="stable").tolist()
+        found = [np.zeros((2, 0), np.int64)]
+        for some in _strips(flight.x[across], reach, self._period[across]):
+            found += self._sweep(flight.x[:, some], reach[some], along, some)
+        return np.concatenate(found, axis=1)
+
+    def _sweep(self, x: Floats, reach: Floats, axis: int, names: Indices) -> list[Indices]:
+        period = np.array([[length or np.inf] for length in self._period])
+        low, high = x[axis] - reach, x[axis] + reach
         order = np.argsort(low, kind="stable")
-        m = len(order)
         # Behind the last sphere come all once more, one period on.
-        low = np.concatenate([low[order], low[order] + (self._period[axis] or np.inf)])
+        low = np.concatenate([low[order], low[order] + period[axis]])
         high, order = high[order], np.concatenate([order, order])
-        here = np.arange(m)
+        here = np.arange(len(high))
         found = []
-        for ahead in range(1, m):
+        for ahead in range(1, len(high)):
             here = here[low[here + ahead] < high[here]]
             if len(here) == 0:
                 break
             i, j = order[here], order[here + ahead]
-            gap = np.abs(self._nearest(flight.x[:, i] - flight.x[:, j]))
-            close = (gap < reach[i] + reach[j]).all(axis=0)
-            found.append(np.sort([i[close], j[close]], axis=0))
-        return np.concatenate(found, axis=1) if found else np.zeros((2, 0), np.int64)
+            gap, both = np.abs(x[:, i] - x[:, j]), reach[i] + reach[j]
+            close = ((gap < both) | (gap > period - both)).all(axis=0)
+            found.append(np.sort([names[i[close]], names[j[close]]], axis=0))
+        return found
 
     def _meetings(
         self, flight: "_Flight", pairs: Indices, radius: Floats
@@ -185,6 +192,20 @@ class _Flight:
         self.x[:, i], self.v[:, i] = self.at(i, t)
         self.t[i] = t
         self.left[i] -= 1
+
+
+def _strips(x: Floats, reach: Floats, length: float) -> list[Indices]:
+    """Spheres by the strips of one axis that they may touch; `length`: of the period, or 0."""
+    m, width = len(x), 4.0 * np.sort(reach)[len(reach) // 2]
+    count = max(1.0, np.floor(length / width)) if length > 0 else STRIPS
+    width = length / count if length > 0 else width
+    first, last = np.floor((x - reach) / width), np.floor((x + reach) / width)
+    spans = np.minimum(last - first + 1.0, count).astype(np.int64)
+    who = np.repeat(np.arange(m), spans)
+    more = np.arange(len(who)) - np.repeat(np.cumsum(spans) - spans, spans)
+    strip = np.mod(first[who] + more, count)
+    order = np.argsort(strip, kind="stable")
+    return np.split(who[order], np.flatnonzero(np.diff(strip[order])) + 1)
 
 
 def _first(t: Floats, i: Indices, j: Indices, step: float) -> tuple[Floats, Indices, Indices]:

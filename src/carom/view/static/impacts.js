@@ -8,6 +8,7 @@
  */
 const LATE = 1.1; // of the time between frames: an impact that seems due a little later has happened too
 const ROUNDS = 32; // of impacts between two frames; later ones are not foretold
+const STRIPS = 256; // where there is no period; strips that many further on are the same again
 const PLANE = 0;
 const AXES = [0, 1, 2];
 
@@ -48,30 +49,41 @@ export class Impacts {
     some.forEach((i, at) => (rest[i] = step - flight.t[at]));
   }
 
-  /** Pairs of spheres that may meet: one sweep along the longest side. @param {Flight} flight @param {Float64Array} radius @param {number} step */
+  /** Pairs of spheres that may meet, some of them twice: sweeps along strips of the world. @param {Flight} flight @param {Float64Array} radius @param {number} step */
   #near({ m, x, v, fall }, radius, step) {
     const speed = radius.map((_, i) => size(v, i, m));
     const fast = speed.slice().sort()[Math.floor((9 * m) / 10)]; // a sphere may be struck, and then be faster
     const reach = radius.map((r, i) => r + step * (speed[i] + fast + size(fall, i, m) * step));
     const side = AXES.map((k) => spread(x.subarray(k * m, k * m + m)));
-    const axis = side.indexOf(Math.max(...side));
-    const place = x.subarray(axis * m, axis * m + m);
-    const begin = place.map((at, i) => at - reach[i]);
-    const order = [...begin.keys()].sort((a, b) => begin[a] - begin[b]);
-    const low = Float64Array.from(order, (i) => begin[i]);
-    const period = this.period[axis] || Infinity;
+    const [along, across] = [...AXES].sort((a, b) => side[b] - side[a]);
+    return strips(x.subarray(across * m, across * m + m), reach, this.period[across])
+      .flatMap((some) => this.#sweep(some, x, reach, along));
+  }
+
+  /** @param {number[]} some @param {Numbers} x @param {Float64Array} reach @param {number} axis */
+  #sweep(some, x, reach, axis) {
+    const [m, count] = [reach.length, some.length];
+    const begin = (/** @type {number} */ i) => x[axis * m + i] - reach[i];
+    const order = Uint32Array.from(some).sort((a, b) => begin(a) - begin(b));
+    const low = Float64Array.from(order, begin);
+    const period = this.period.map((length) => length || Infinity);
     /** @type {[number, number][]} */ const found = [];
-    order.forEach((i, here) => {
-      const high = place[i] + reach[i];
-      for (let ahead = 1; ahead < m; ahead++) {
+    for (let here = 0; here < count; here++) {
+      const i = order[here];
+      const high = x[axis * m + i] + reach[i];
+      for (let at = here + 1; at < here + count; at++) {
         // Behind the last sphere come all once more, one period on.
-        const at = here + ahead;
-        if (!((at < m ? low[at] : low[at - m] + period) < high)) break;
-        const j = order[at % m];
-        const close = AXES.every((k) => Math.abs(this.#nearest(x[k * m + i] - x[k * m + j], k)) < reach[i] + reach[j]);
+        if (!((at < count ? low[at] : low[at - count] + period[axis]) < high)) break;
+        const j = order[at < count ? at : at - count];
+        const both = reach[i] + reach[j];
+        let close = true;
+        for (let k = 0; close && k < 3; k++) {
+          const gap = Math.abs(x[k * m + i] - x[k * m + j]);
+          close = gap < both || gap > period[k] - both;
+        }
         if (close) found.push(i < j ? [i, j] : [j, i]);
       }
-    });
+    }
     return found;
   }
 
@@ -191,6 +203,20 @@ class Flight {
       });
     }
   }
+}
+
+/** Spheres by the strips of one axis that they may touch. @param {Float64Array} x @param {Float64Array} reach @param {number} length of the period, or 0 */
+function strips(x, reach, length) {
+  let width = 4 * reach.slice().sort()[Math.floor(reach.length / 2)];
+  const count = length > 0 ? Math.max(1, Math.floor(length / width)) : STRIPS;
+  if (length > 0) width = length / count;
+  /** @type {number[][]} */ const found = Array.from({ length: count }, () => []);
+  reach.forEach((r, i) => {
+    const [first, last] = [Math.floor((x[i] - r) / width), Math.floor((x[i] + r) / width)];
+    const span = Math.min(last - first + 1, count);
+    for (let more = 0; more < span; more++) found[(((first + more) % count) + count) % count].push(i);
+  });
+  return found;
 }
 
 /** Of all that may happen, what is next for everybody concerned. @param {Impact[]} due */
