@@ -32,7 +32,8 @@ export class Impacts {
    */
   fly(x, v, fall, impulses, step, rest) {
     rest.fill(step);
-    const some = [...impulses.keys()].filter((i) => impulses[i] > 0);
+    /** @type {number[]} */ const some = [];
+    impulses.forEach((count, i) => count > 0 && some.push(i));
     if (!(step > 0) || some.length === 0) return;
     const flight = new Flight(some, x, v, fall, impulses);
     const radius = Float64Array.from(some, (i) => this.radius[i]);
@@ -160,12 +161,10 @@ export class Impacts {
 class Flight {
   /** @param {number[]} some which spheres @param {Numbers} x @param {Numbers} v @param {Numbers} fall @param {Uint32Array} impulses */
   constructor(some, x, v, fall, impulses) {
-    const n = impulses.length;
-    const all = AXES.flatMap((k) => some.map((i) => k * n + i));
     this.m = some.length;
-    this.x = Float64Array.from(all, (at) => x[at]);
-    this.v = Float64Array.from(all, (at) => v[at]);
-    this.fall = Float64Array.from(all, (at) => fall[at]);
+    this.x = taken(x, some);
+    this.v = taken(v, some);
+    this.fall = taken(fall, some);
     this.left = Uint32Array.from(some, (i) => impulses[i]);
     this.t = new Float64Array(this.m);
   }
@@ -203,6 +202,16 @@ class Flight {
       });
     }
   }
+}
+
+/** @param {Numbers} numbers of all @param {number[]} some */
+function taken(numbers, some) {
+  const [n, m] = [numbers.length / 3, some.length];
+  const found = new Float64Array(3 * m);
+  for (let at = 0; at < m; at++) {
+    for (let k = 0; k < 3; k++) found[k * m + at] = numbers[k * n + some[at]];
+  }
+  return found;
 }
 
 /** Spheres by the strips of one axis that they may touch. @param {Float64Array} x @param {Float64Array} reach @param {number} length of the period, or 0 */
