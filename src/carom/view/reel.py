@@ -3,8 +3,8 @@
 Motion is predicted and only what the prediction misses is written. Spheres with impulses since the
 frame before collide as `carom.view.impacts` foretells it. From there to the frame, a time h, a
 sphere keeps its velocity, but for gravity's gh, and moves by the mean of its two velocities times
-h. Of free flight nothing is left to write; of a collision little, because it magnifies how far
-the reader is off. The rest is whole numbers of a quantum, of which deflate makes little where most
+h. Of free flight nothing is left to write; of a collision a few digits, because it magnifies how
+far the reader is off. They are whole numbers of a quantum, of which deflate makes little where most
 are zero.
 
 The prediction begins at what a reader has, not at the truth, so that errors do not add up: a

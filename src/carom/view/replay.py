@@ -2,7 +2,7 @@
 
 import base64
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sized
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
@@ -166,6 +166,7 @@ def pack(
 ) -> tuple[bytes, str]:
     """Make the reel of a motion, and its title."""
     first: Any = None
+    asked = len(times) if isinstance(times, Sized) else 0
     rows: list[list[float]] = []
     places: list[Any] = []
     speeds: list[Any] = []
@@ -180,10 +181,11 @@ def pack(
             raise InputError(msg)
         if rows and frame.time <= rows[-1][0]:
             continue
-        if len(frame) * (len(rows) + 1) > MOST:
+        if len(frame) * max(len(rows) + 1, asked) > MOST:
+            most = MOST // len(frame)
             msg = (
-                f"{len(frame):,} spheres in more than {len(rows):,} frames are too much for one "
-                f"page, which holds {MOST:,} in all: take fewer frames (--fps, a shorter stretch)"
+                f"{len(frame):,} spheres in more than {most:,} frames are too much for one page, "
+                f"which holds {MOST:,} in all: take fewer frames (--fps, a shorter stretch)"
             )
             raise InputError(msg)
         rows.append(_row(frame))
