@@ -13,12 +13,12 @@ from .png import pixels
 from .test_notebook import until, wait
 
 CELLS = [
-    "import carom\nsim = carom.Simulation(carom.scenes.gas(n=60))\nsim.view(height=300)",
-    "sim.view(height=300, color='energy')",
+    "import carom\nsim = carom.Simulation(carom.scenes.gas(n=60))\nsim.view(height=240)",
+    "sim.view(height=240, color='energy')",
     "with carom.Simulation(carom.scenes.two_balls()) as other:\n"
     "    other.record('run.gsd', every=0.5)\n"
     "    other.run(until=60)\n"
-    "carom.load('run.gsd').view(height=300)",
+    "carom.load('run.gsd').view(height=240)",
 ]
 
 
@@ -75,7 +75,7 @@ def book(chromium, lab):
     """The notebook in a browser. When all is done, checks what the page did meanwhile."""
     complaints, calls = [], []
     context = chromium.new_context(
-        viewport={"width": 1300, "height": 1250}, reduced_motion="reduce"
+        viewport={"width": 960, "height": 1080}, reduced_motion="reduce"
     )
     page = context.new_page()
     page.on(
@@ -113,7 +113,7 @@ def test_views_in_jupyterlab(book):
     first, second, recorded = views(book)
     for frame in (first, second, recorded):
         until(frame, "globalThis.carom?.timeline.t > 0.1")
-        assert np.ptp(picture(frame)[100:200, 300:500], axis=(0, 1)).min() > 50
+        assert np.ptp(picture(frame)[90:150, 200:400], axis=(0, 1)).min() > 50
     assert [f.evaluate("carom.scene.n") for f in (first, second, recorded)] == [60, 60, 2]
     assert [f.evaluate("carom.look.color") for f in (first, second)] == ["speed", "energy"]
     # Both views are of one simulation, so a pause in one is one for both.
