@@ -74,9 +74,7 @@ def _told(own):
 def book(chromium, lab):
     """The notebook in a browser. When all is done, checks what the page did meanwhile."""
     complaints, calls = [], []
-    context = chromium.new_context(
-        viewport={"width": 960, "height": 1080}, reduced_motion="reduce"
-    )
+    context = chromium.new_context(viewport={"width": 960, "height": 1080}, reduced_motion="reduce")
     page = context.new_page()
     page.on(
         "console",

@@ -171,7 +171,7 @@ def test_a_browser_that_is_too_old_is_told(chromium, tmp_path):
 
 def test_it_fits_a_phone(play, tmp_path):
     path = film(tmp_path / "a.html", carom.Simulation(scenes.build("two-balls")))
-    for width, height in ((390, 844), (844, 390), (320, 600)):
+    for width, height in ((390, 844), (844, 390), (320, 600), (501, 240), (641, 400)):
         shown = play(path, width, height, has_touch=True)
         for name in ("film", "bar"):
             box = shown.page.locator(f"#{name}").bounding_box()
