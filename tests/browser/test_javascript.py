@@ -20,7 +20,7 @@ from carom.state import State
 from carom.view.protocol import Meters, decode_command, encode_frame, encode_scene
 from carom.view.reel import decode
 from carom.view.replay import pack
-from carom.view.wire import OPERATIONS, VERSION
+from carom.view.wire import OPERATIONS, REEL_FORMAT, VERSION
 
 HERE = Path(__file__).parent / "js"
 
@@ -121,14 +121,21 @@ def test_protocol_on_both_sides(tmp_path):
     }  # fmt: skip
 
 
+#: Free flight and walls; chains of collisions in a periodic box; gravity and lost energy.
+REELS = {"gas": {"n": 60, "seed": 4}, "fluid": {"n": 60}, "bounce": {"n": 60}}
+
+
 def test_reels_on_both_sides(tmp_path):
     """The page computes the same bits as Python from the same file."""
-    scene = scenes.build("gas", {"n": 60, "seed": 4})
-    sim = carom.Simulation(scene, keep_events=10_000)
-    times = np.arange(60) / 30 * sim.pace
-    data, _ = pack(sim, times, color=None, title=None, speed=2.0, progress=None)
-    (tmp_path / "python.reel").write_bytes(data)
-    body = zlib.decompress(data).replace(b'"format": 1', b'"format":99')
+    reels = {}
+    for name, options in REELS.items():
+        sim = carom.Simulation(scenes.build(name, options))
+        times = np.arange(60) / 30 * sim.pace
+        reels[name], _ = pack(sim, times, color=None, title=None, speed=2.0, progress=None)
+        (tmp_path / f"{name}.reel").write_bytes(reels[name])
+    scene, data = scenes.build("gas", REELS["gas"]), reels["gas"]
+    times = np.arange(60) / 30 * scene.pace
+    body = zlib.decompress(data).replace(b'"format": %d' % REEL_FORMAT, b'"format":99')
     (tmp_path / "later.reel").write_bytes(zlib.compress(body))
     again = carom.Simulation(scene, keep_events=10_000)
     again.run(until=times[-1])
@@ -139,12 +146,15 @@ def test_reels_on_both_sides(tmp_path):
     ]
     (tmp_path / "events.json").write_text(json.dumps({"collisions": events}))
     node("reel.test.mjs", CAROM_EXCHANGE=str(tmp_path))
+    for name, packed in reels.items():
+        reel = decode(packed)
+        flat = np.fromfile(tmp_path / f"{name}.spheres", np.float32).reshape(60, -1)
+        x, v, counts = np.split(flat, [180, 360], axis=1)
+        for part, truth in ((x, reel.position), (v, reel.velocity)):
+            there = part.reshape(60, 60, 3).transpose(0, 2, 1)
+            assert np.array_equal(there, truth.astype(np.float32)), name
+        assert np.array_equal(counts.view(np.uint32), reel.counts)
     reel = decode(data)
-    rows = np.fromfile(tmp_path / "javascript.spheres", np.float32).reshape(60, 7, 60)
-    flat = rows.reshape(60, -1)
-    for part, truth in ((flat[:, :180], reel.position), (flat[:, 180:360], reel.velocity)):
-        assert np.array_equal(part.reshape(60, 60, 3).transpose(0, 2, 1), truth.astype(np.float32))
-    assert np.array_equal(flat[:, 360:].view(np.uint32), reel.counts)
     back = decode((tmp_path / "javascript.reel").read_bytes())
     assert np.array_equal(back.columns, reel.columns)
     assert np.array_equal(back.counts, reel.counts)

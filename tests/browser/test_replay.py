@@ -1,6 +1,9 @@
 """Replays in a real browser: from the disk, under their own policy, alone."""
 
+import base64
+import re
 import time
+import zlib
 
 import numpy as np
 import pytest
@@ -144,9 +147,31 @@ def test_it_has_what_it_can_do_and_nothing_else(play, tmp_path):
     assert not shown.page.get_by_role("textbox").count()
 
 
+def test_a_program_that_the_policy_does_not_name_is_not_run(chromium, tmp_path):
+    path = film(tmp_path / "a.html", carom.Simulation(scenes.build("two-balls")))
+    text = path.read_text("utf-8")
+    packed = re.search(r'id="program">([^<]+)<', text)[1]
+    other = base64.b64encode(zlib.compress(b"globalThis.carom = 'another'")).decode()
+    path.write_text(text.replace(packed, other), "utf-8")
+    page = chromium.new_context().new_page()
+    with page.expect_console_message(lambda message: "script-src" in message.text):
+        page.goto(path.as_uri())
+    assert page.evaluate("globalThis.carom") is None
+    page.context.close()
+
+
+def test_a_browser_that_is_too_old_is_told(chromium, tmp_path):
+    path = film(tmp_path / "a.html", carom.Simulation(scenes.build("two-balls")))
+    page = chromium.new_context().new_page()
+    page.add_init_script("delete globalThis.DecompressionStream")
+    page.goto(path.as_uri())
+    page.get_by_text("This page needs a browser of 2023 or later").wait_for(timeout=5000)
+    page.context.close()
+
+
 def test_it_fits_a_phone(play, tmp_path):
     path = film(tmp_path / "a.html", carom.Simulation(scenes.build("two-balls")))
-    for width, height in ((390, 844), (844, 390), (320, 600)):
+    for width, height in ((390, 844), (844, 390), (320, 600), (501, 240), (641, 400)):
         shown = play(path, width, height, has_touch=True)
         for name in ("film", "bar"):
             box = shown.page.locator(f"#{name}").bounding_box()

@@ -116,6 +116,17 @@ def test_two_views_of_one_simulation_share_its_time(sim):
     assert one.frames[-1]["t"] == two.frames[-1]["t"]
 
 
+def test_a_view_that_opens_while_time_stands_shows_where_it_stands(sim):
+    host = notebook.Host(sim)
+    Cell(host).say("pause")
+    two = Cell(host, "b")
+    assert two.scenes == 1
+    assert two.frames[-1]["t"] == sim.time
+    again = Cell(host, "b")  # a page that the notebook has loaded anew
+    assert again.scenes == 1
+    assert again.frames[-1]["t"] == sim.time
+
+
 def test_a_page_that_has_gone_costs_nothing_and_one_that_talks_nonsense_is_told(sim):
     host = notebook.Host(sim)
     gone, here = Cell(host), Cell(host, "b")

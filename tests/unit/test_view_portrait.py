@@ -28,9 +28,11 @@ def test_walls_as_the_engine_counts_them():
     assert [wall["offset"] for wall in about["walls"]] == [-250] * 6
     assert np.array(about["walls"][1]["normal"]) == pytest.approx([-1, 0, 0])
     assert told(carom.Simulation(scenes.phase_0()))["walls"] == [
-        {"kind": 1, "normal": [0, 0, 0], "offset": 500, "name": "Sphere"}
+        {"kind": 1, "normal": [0, 0, 0], "offset": 500, "restitution": 1, "name": "Sphere"}
     ]
     assert about["walls"][1]["name"] == "x+ wall of the Box"
+    bounce = told(carom.Simulation(scenes.bounce(restitution=0.7)))
+    assert [bounce["restitution"], bounce["walls"][0]["restitution"]] == [0.7, 0.7]
 
 
 def test_where_it_comes_from():

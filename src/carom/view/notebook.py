@@ -68,6 +68,7 @@ class Host:
     def __init__(self, sim: Viewable) -> None:
         self._sim = sim
         self._pages: dict[str, Page] = {}
+        self._latest: Snapshot | None = None
         self._driver = Driver(sim, self._publish, self._hungry, lambda: bool(self._pages))
         self._driver.prepare()
         self._left = self._seen()
@@ -80,7 +81,7 @@ class Host:
             send({"text": encode_text("refused", str(error))}, [])
             return
         if command.op == "hello":
-            self._pages[name] = Page(send)
+            self._pages[name] = Page(send, self._latest)
             send({"text": encode_text("role", "control")}, [])
         page = self._pages.get(name)
         if page is not None:
@@ -104,6 +105,7 @@ class Host:
             )
 
     def _publish(self, snapshot: Snapshot) -> None:
+        self._latest = snapshot
         # A page that has not come back for long is closed: its credit is used up, it gets no more.
         for page in self._pages.values():
             page.latest = snapshot
@@ -126,10 +128,10 @@ class Host:
 class Page:
     """One picture of a simulation in a notebook."""
 
-    def __init__(self, send: Send) -> None:
+    def __init__(self, send: Send, latest: Snapshot | None) -> None:
         self.send = send
         self.credits = 0
-        self.latest: Snapshot | None = None
+        self.latest = latest
         self._number = self._scene_number = 0
         self._notes: dict[str, int] = {}
 

@@ -1,16 +1,41 @@
 """What a page must know of a scene besides the motion: walls, colours, scales, where to look."""
 
-from typing import Any
+from typing import Any, Protocol
 
 from carom import mechanics
 from carom.pictures.look import is_paper, scales
 from carom.pictures.room import extent
+from carom.scene import Scene
 from carom.state import State
-from carom.view.viewable import Viewable
 from carom.walls import wall_names
+from carom.world import World
 
 
-def portrait(sim: Viewable, state: State, key: int) -> dict[str, Any]:
+class Sitter(Protocol):
+    """Whose portrait it is: a `carom.Simulation`, or what a replay knows of one."""
+
+    @property
+    def scene(self) -> Scene | None:
+        """Where it started from."""
+
+    @property
+    def world(self) -> World:
+        """Everything but the spheres."""
+
+    @property
+    def walls(self) -> Any:
+        """Descriptions of the walls."""
+
+    @property
+    def pace(self) -> float:
+        """Simulated time per second at speed 1."""
+
+    @property
+    def method(self) -> Any:
+        """How contacts are found."""
+
+
+def portrait(sim: Sitter, state: State, key: int) -> dict[str, Any]:
     """Describe a scene for the page, as plain lists and numbers fit for JSON.
 
     `key` changes when another scene was loaded, so that the page begins afresh.
@@ -29,6 +54,7 @@ def portrait(sim: Viewable, state: State, key: int) -> dict[str, Any]:
         "wire": bool(scene.wire) if scene else False,
         "color": scene.color if scene else "own",
         "collide": bool(world.collide),
+        "restitution": float(world.restitution),
         "camera": None
         if camera is None
         else {"position": list(camera.position), "target": list(camera.target)},
@@ -39,6 +65,7 @@ def portrait(sim: Viewable, state: State, key: int) -> dict[str, Any]:
                 "kind": int(wall["kind"]),
                 "normal": wall["normal"].tolist(),
                 "offset": float(wall["offset"]),
+                "restitution": float(wall["restitution"]),
                 "name": name.removeprefix("the "),
             }
             for wall, name in zip(world.walls, wall_names(sim.walls), strict=True)

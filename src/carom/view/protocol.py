@@ -170,6 +170,15 @@ def encode_scene(state: State, number: int, about: dict[str, Any]) -> bytes:
     )
 
 
+def decode_scene(message: bytes) -> tuple[dict[str, Any], Floats, Floats]:
+    """Unpack of a scene message its JSON part, radii and masses."""
+    *_, n, _, size, _ = SCENE_HEADER.unpack_from(message)
+    start = SCENE_HEADER.size
+    about: dict[str, Any] = json.loads(message[start : start + size])
+    radius, mass = np.frombuffer(message, "<f4", 2 * n, start + size).reshape(2, n).astype(float)
+    return about, radius, mass
+
+
 def encode_text(key: str, value: Any) -> str:
     """Write a text message."""
     return json.dumps({key: value}, allow_nan=False)

@@ -1,13 +1,15 @@
 """A stretch of motion in few bytes, as replay files hold it; `static/reel.js` is the other side.
 
-Motion is predicted and only what the prediction misses is written. From one frame to the next a
+Motion is predicted and only what the prediction misses is written. Spheres with impulses since the
+frame before collide as `carom.view.impacts` foretells it. From there to the frame, a time h, a
 sphere keeps its velocity, but for gravity's gh, and moves by the mean of its two velocities times
-h: without a collision both are exact, and nothing is left to write. The rest is whole numbers of a
-quantum, of which deflate makes little where most are zero.
+h. Of free flight nothing is left to write; of a collision a few digits, because it magnifies how
+far the reader is off. They are whole numbers of a quantum, of which deflate makes little where most
+are zero.
 
 The prediction begins at what a reader has, not at the truth, so that errors do not add up: a
 position is off by half a quantum at most. Both sides do the same sums in the same order, in
-doubles with + - × and floor alone, and arrive at the same bits.
+doubles with + - × ÷ √ and floor alone, and arrive at the same bits.
 
 A **reel** is one zlib stream of
 
@@ -17,7 +19,8 @@ JSON     format, n, frames, quanta (of length and velocity), columns, speed, sce
 scene    a scene message (`carom.view.protocol`) of that many bytes
 columns  doubles, frame after frame in each column, as eight byte planes
 counts   change of each sphere's count since the frame before, as four byte planes
-v, x     what the prediction misses, as four byte planes each
+v, x     what the prediction misses, as four byte planes each: first where counts have changed,
+         then where they have not
 ======== ======================================================================================
 
 Planes hold the lowest bytes of all numbers first, then the next. Numbers run over frames, then x,
@@ -36,6 +39,8 @@ from numpy.typing import NDArray
 
 from carom.errors import InputError
 from carom.state import Floats
+from carom.view.impacts import Impacts
+from carom.view.protocol import decode_scene
 from carom.view.wire import REEL_COLUMNS, REEL_FORMAT, STILL
 
 STEPS = 2**16  #: quanta of length across everything that is shown
@@ -71,16 +76,8 @@ class Reel:
     speed: float = 1.0
 
 
-def encode(reel: Reel, period: Sequence[float], smallest: float) -> bytes:
+def encode(reel: Reel) -> bytes:
     """Pack a reel.
-
-    Parameters
-    ----------
-    reel : Reel
-    period : (3,) floats
-        0 on axes that are not periodic.
-    smallest : float
-        Radius of the smallest sphere, of which positions must not lose sight.
 
     Raises
     ------
@@ -88,16 +85,17 @@ def encode(reel: Reel, period: Sequence[float], smallest: float) -> bytes:
         If motion is too wild to be told in whole numbers.
     """
     frames, _, n = reel.position.shape
-    quanta = _quanta(reel, smallest)
+    about, radius, mass = decode_scene(reel.scene)
+    quanta = _quanta(reel, float(radius.min(initial=np.inf)))
     places = np.zeros((frames, 3, n), np.int64)
     speeds = np.zeros((frames, 3, n), np.int64)
-    guide = _Guide(n, quanta, period)
+    changes = np.diff(reel.counts, axis=0, prepend=np.uint32(0))
+    guide = _Guide(Impacts(about, radius, mass), quanta, about["period"])
     for k in range(frames):
-        step, gravity = _step(reel.columns, k)
-        guide.predict_velocity(step, gravity, reel.counts[k])
+        guide.predict_velocity(*_step(reel.columns, k), reel.counts[k])
         speeds[k] = guide.miss_velocity(reel.velocity[k])
         guide.correct_velocity(speeds[k])
-        guide.predict_position(step)
+        guide.predict_position()
         places[k] = guide.miss_position(reel.position[k])
         guide.correct_position(places[k])
     if max(np.abs(places).max(initial=0), np.abs(speeds).max(initial=0)) > LARGEST:
@@ -113,13 +111,12 @@ def encode(reel: Reel, period: Sequence[float], smallest: float) -> bytes:
         "scene": len(reel.scene),
     }
     text = json.dumps(header, allow_nan=False).encode()
-    before = np.vstack([np.zeros((1, n), np.uint32), reel.counts[:-1]])
+    hit = _hit(changes)
     parts = (
         *(struct.pack("<I", len(text)), text, reel.scene),
         _planes(reel.columns.T.astype("<f8")),
-        _planes((reel.counts - before).astype("<u4")),
-        _planes(_folded(speeds)),
-        _planes(_folded(places)),
+        _planes(changes.astype("<u4")),
+        *(_planes(_folded(np.concatenate([a[hit], a[~hit]]))) for a in (speeds, places)),
     )
     return zlib.compress(b"".join(parts), 9)
 
@@ -138,18 +135,20 @@ def decode(data: bytes) -> Reel:
         parts.append(body[start : start + length])
         start += length
     table = _numbers(parts[0], "<f8").reshape(columns, frames).T
-    counts = np.cumsum(_numbers(parts[1], "<u4").reshape(frames, n), axis=0, dtype=np.uint32)
-    speeds = _unfolded(_numbers(parts[2], "<u4")).reshape(frames, 3, n)
-    places = _unfolded(_numbers(parts[3], "<u4")).reshape(frames, 3, n)
-    (head,) = struct.unpack_from("<I", scene, 16)
-    period = json.loads(scene[24 : 24 + head])["period"]
+    changes = _numbers(parts[1], "<u4").reshape(frames, n)
+    counts = np.cumsum(changes, axis=0, dtype=np.uint32)
+    hit = _hit(changes)
+    speeds, places = (np.empty((frames, 3, n), np.int64) for _ in range(2))
+    for misses, part in ((speeds, parts[2]), (places, parts[3])):
+        numbers = _unfolded(_numbers(part, "<u4"))
+        misses[hit], misses[~hit] = np.split(numbers, [np.count_nonzero(hit)])
+    about, radius, mass = decode_scene(scene)
     position, velocity = np.empty((frames, 3, n)), np.empty((frames, 3, n))
-    guide = _Guide(n, header["quanta"], period)
+    guide = _Guide(Impacts(about, radius, mass), header["quanta"], about["period"])
     for k in range(frames):
-        step, gravity = _step(table, k)
-        guide.predict_velocity(step, gravity, counts[k])
+        guide.predict_velocity(*_step(table, k), counts[k])
         guide.correct_velocity(speeds[k])
-        guide.predict_position(step)
+        guide.predict_position()
         guide.correct_position(places[k])
         position[k], velocity[k] = guide.x, guide.v
     return Reel(scene, table, position, velocity, counts, header["speed"])
@@ -158,15 +157,20 @@ def decode(data: bytes) -> Reel:
 class _Guide:
     """Where every sphere is by what was written so far."""
 
-    def __init__(self, n: int, quanta: Sequence[float], period: Sequence[float]) -> None:
+    def __init__(self, impacts: Impacts, quanta: Sequence[float], period: Sequence[float]) -> None:
+        n = impacts.n
         self.x, self.v, self._before = np.zeros((3, n)), np.zeros((3, n)), np.zeros((3, n))
+        self._counts, self._rest = np.zeros(n, np.uint32), np.zeros(n)
+        self._impacts = impacts
         self._length, self._speed = quanta
         self._period = period
 
     def predict_velocity(self, step: float, gravity: Floats, counts: Unsigned) -> None:
-        self._before = self.v
-        falls = (counts & np.uint32(STILL)) == 0
-        self.v = np.stack([self.v[k] + np.where(falls, gravity[k] * step, 0.0) for k in range(3)])
+        fall = np.where((counts & np.uint32(STILL)) == 0, gravity[:, None], 0.0)
+        impulses = ((counts - self._counts) & np.uint32(STILL - 1)).astype(np.int64)
+        self.x, self._before, self._rest = self._impacts.fly(self.x, self.v, fall, impulses, step)
+        self.v = self._before + fall * self._rest
+        self._counts = counts
 
     def miss_velocity(self, truth: Floats) -> NDArray[np.int64]:
         return _rounded((truth - self.v) / self._speed)
@@ -174,8 +178,8 @@ class _Guide:
     def correct_velocity(self, miss: NDArray[np.int64]) -> None:
         self.v = self.v + self._speed * miss
 
-    def predict_position(self, step: float) -> None:
-        self.x = self.x + (self._before + self.v) * (0.5 * step)
+    def predict_position(self) -> None:
+        self.x = self.x + (self._before + self.v) * (0.5 * self._rest)
         for k, length in enumerate(self._period):
             if length > 0:
                 self.x[k] = self.x[k] - length * np.floor(self.x[k] / length + 0.5)
@@ -206,6 +210,11 @@ def _quanta(reel: Reel, smallest: float) -> tuple[float, float]:
     fastest = float(np.abs(reel.velocity).max())
     slow = length / (SLOW * usual) if usual > 0 else 0.0
     return length, max(slow, fastest / LARGEST * 2) or 1.0
+
+
+def _hit(changes: Unsigned) -> NDArray[np.bool_]:
+    """Whose numbers stand in front: (F, 3, n)."""
+    return np.broadcast_to(changes[:, None] != 0, (len(changes), 3, changes.shape[1]))
 
 
 def _rounded(values: Floats) -> NDArray[np.int64]:

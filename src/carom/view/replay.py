@@ -2,7 +2,7 @@
 
 import base64
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sized
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
@@ -11,11 +11,12 @@ import numpy as np
 
 from carom.errors import FileError, InputError
 from carom.scene import Scene
-from carom.state import Floats, State
+from carom.state import Floats
 from carom.view import bundle
 from carom.view.portrait import portrait
-from carom.view.protocol import Moment, counts_of, encode_scene
+from carom.view.protocol import counts_of, encode_scene
 from carom.view.reel import Reel, encode
+from carom.view.viewable import Instant
 from carom.world import World
 
 #: Spheres times frames; more would fill the memory of a phone.
@@ -23,48 +24,6 @@ MOST = 5_000_000
 #: Frames per second at speed 1, and how many, where nobody asks for others.
 PER_SECOND, MOST_FRAMES = 30, 6000
 ENTRY = "replay.js"
-
-
-class Instant(Moment, Protocol):
-    """What a replay takes of a `carom.Frame`."""
-
-    velocity: Any
-
-    @property
-    def state(self) -> State:
-        """The spheres."""
-
-    @property
-    def world(self) -> World:
-        """Everything but the spheres."""
-
-    @property
-    def walls(self) -> Any:
-        """Descriptions of the walls."""
-
-    @property
-    def kinetic_energy(self) -> float:
-        """Of all free spheres."""
-
-    @property
-    def potential_energy(self) -> float:
-        """Of all free spheres."""
-
-    @property
-    def dissipated(self) -> float:
-        """Energy taken by inelastic collisions."""
-
-    @property
-    def energy_drift(self) -> float:
-        """Relative error of the energy."""
-
-    @property
-    def momentum(self) -> Any:
-        """Of all free spheres."""
-
-    @property
-    def temperature(self) -> float:
-        """Of all free spheres."""
 
 
 class Source(Protocol):
@@ -100,7 +59,7 @@ class Recorded(Source, Protocol):
 
 @dataclass(frozen=True, slots=True)
 class _Sitter:
-    """What a portrait is made of."""
+    """Whose portrait a replay shows: the first of its frames, with what is the source's."""
 
     scene: Scene | None
     world: World
@@ -207,6 +166,7 @@ def pack(
 ) -> tuple[bytes, str]:
     """Make the reel of a motion, and its title."""
     first: Any = None
+    asked = len(times) if isinstance(times, Sized) else 0
     rows: list[list[float]] = []
     places: list[Any] = []
     speeds: list[Any] = []
@@ -221,10 +181,11 @@ def pack(
             raise InputError(msg)
         if rows and frame.time <= rows[-1][0]:
             continue
-        if len(frame) * (len(rows) + 1) > MOST:
+        if len(frame) * max(len(rows) + 1, asked) > MOST:
+            most = MOST // len(frame)
             msg = (
-                f"{len(frame):,} spheres in more than {len(rows):,} frames are too much for one "
-                f"page, which holds {MOST:,} in all: take fewer frames (--fps, a shorter stretch)"
+                f"{len(frame):,} spheres in more than {most:,} frames are too much for one page, "
+                f"which holds {MOST:,} in all: take fewer frames (--fps, a shorter stretch)"
             )
             raise InputError(msg)
         rows.append(_row(frame))
@@ -236,11 +197,8 @@ def pack(
     if len(rows) < 2:
         msg = f"a replay needs at least two frames at different times; there are {len(rows)}"
         raise InputError(msg)
-    about = portrait(
-        _Sitter(source.scene, first.world, first.walls, source.pace),  # type: ignore[arg-type]
-        first.state,
-        0,
-    )
+    sitter = _Sitter(source.scene, first.world, first.walls, source.pace)
+    about = portrait(sitter, first.state, 0)
     about |= {} if color is None else {"color": color}
     about |= {} if title is None else {"title": title}
     reel = Reel(
@@ -251,8 +209,7 @@ def pack(
         np.array(counts, np.uint32),
         speed,
     )
-    smallest = float(first.state.radius.min(initial=np.inf))
-    return encode(reel, about["period"], smallest), about["title"] or "carom"
+    return encode(reel), about["title"] or "carom"
 
 
 def _row(frame: Instant) -> list[float]:

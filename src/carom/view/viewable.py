@@ -12,52 +12,20 @@ from carom.view.protocol import Moment
 from carom.world import World
 
 
-class Viewable(Moment, Protocol):
-    """The part of `carom.Simulation` that is driven and shown; see there for what it means."""
-
-    velocity: Any
-    walls: Any
-    gravity: Any
-    rule: Smooth
-
-    def __getitem__(self, index: int) -> Any:
-        """One sphere, whose velocity can be assigned."""
+class Instant(Moment, Protocol):
+    """What is shown of a moment: of a `carom.Frame`, or of a simulation as it is now."""
 
     @property
-    def scene(self) -> Scene | None:
-        """Where it started from."""
+    def walls(self) -> Any:
+        """Descriptions of the walls."""
 
     @property
     def state(self) -> State:
-        """A copy of the spheres now."""
+        """The spheres."""
 
     @property
     def world(self) -> World:
         """Everything but the spheres."""
-
-    @property
-    def events(self) -> NDArray[Any]:
-        """Records of the last run."""
-
-    @property
-    def method(self) -> Any:
-        """How contacts are found."""
-
-    @property
-    def tick(self) -> float:
-        """Length of a step, where there are steps."""
-
-    @property
-    def pace(self) -> float:
-        """Simulated time per second at speed 1."""
-
-    @property
-    def missed(self) -> int:
-        """Collisions that ticks did not see."""
-
-    @property
-    def max_overlap(self) -> float:
-        """Deepest overlap so far."""
 
     @property
     def kinetic_energy(self) -> float:
@@ -82,6 +50,46 @@ class Viewable(Moment, Protocol):
     @property
     def temperature(self) -> float:
         """Of all free spheres."""
+
+
+class Viewable(Instant, Protocol):
+    """The part of `carom.Simulation` that is driven and shown; see there for what it means."""
+
+    velocity: Any
+    walls: Any
+    gravity: Any
+    rule: Smooth
+
+    def __getitem__(self, index: int) -> Any:
+        """One sphere, whose velocity can be assigned."""
+
+    @property
+    def scene(self) -> Scene | None:
+        """Where it started from."""
+
+    @property
+    def events(self) -> NDArray[Any]:
+        """Records of the last run."""
+
+    @property
+    def method(self) -> Any:
+        """How contacts are found."""
+
+    @property
+    def tick(self) -> float:
+        """Length of a step, where there are steps."""
+
+    @property
+    def pace(self) -> float:
+        """Simulated time per second at speed 1."""
+
+    @property
+    def missed(self) -> int:
+        """Collisions that ticks did not see."""
+
+    @property
+    def max_overlap(self) -> float:
+        """Deepest overlap so far."""
 
     def run(
         self,

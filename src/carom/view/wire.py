@@ -52,7 +52,7 @@ REEL_COLUMNS = (
     *("t", "gravity_x", "gravity_y", "gravity_z", "kinetic", "potential", "dissipated", "drift"),
     *("collisions", "wall_collisions", "momentum_x", "momentum_y", "momentum_z", "temperature"),
 )
-REEL_FORMAT = 1
+REEL_FORMAT = 2
 SCENE_HEADER = struct.Struct("<" + "".join(letter for _, letter in HEADER))
 FRAME_HEADER = struct.Struct(SCENE_HEADER.format + "d" * len(METERS))
 #: Bytes of one sphere in a frame: x and v as three floats each, and a count.

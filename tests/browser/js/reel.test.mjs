@@ -10,10 +10,13 @@ const { Film } = await import(`${folder}film.js`);
 const { collisionsBetween } = await import(`${folder}collisions.js`);
 const place = process.env.CAROM_EXCHANGE;
 
-const reel = await decodeReel(readFileSync(`${place}/python.reel`));
+const reel = await decodeReel(readFileSync(`${place}/gas.reel`));
 
 test("reads what Python writes, and writes what Python reads", async () => {
-  writeFileSync(`${place}/javascript.spheres`, Buffer.concat(reel.keyframes.map(({ spheres }) => spheres)));
+  for (const name of ["gas", "fluid", "bounce"]) {
+    const { keyframes } = await decodeReel(readFileSync(`${place}/${name}.reel`));
+    writeFileSync(`${place}/${name}.spheres`, Buffer.concat(keyframes.map(({ spheres }) => spheres)));
+  }
   writeFileSync(`${place}/javascript.reel`, await encodeReel(reel));
 });
 

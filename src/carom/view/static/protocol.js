@@ -24,10 +24,11 @@
  * @property {boolean} wire
  * @property {ColorMode} color
  * @property {boolean} collide
+ * @property {number} restitution
  * @property {{position: number[], target: number[]} | null} camera
  * @property {number[]} period
  * @property {number[]} gravity
- * @property {{kind: number, normal: number[], offset: number, name: string}[]} walls
+ * @property {{kind: number, normal: number[], offset: number, restitution: number, name: string}[]} walls
  * @property {number} free_axes along how many axes momentum is conserved
  * @property {number[]} low
  * @property {number[]} high

@@ -6,6 +6,7 @@
  * @typedef {import("./protocol.js").Scene} Scene
  * @typedef {{scene: Scene, keyframes: Keyframe[], speed: number}} Reel
  */
+import { Impacts } from "./impacts.js";
 import { decode } from "./protocol.js";
 import { REEL_COLUMNS, REEL_FORMAT, STILL } from "./wire.js";
 
@@ -16,32 +17,41 @@ const LARGEST = 2 ** 30; // of any number written
 
 /** Where every sphere is by what was written so far: x of all, then y, then z. */
 class Guide {
-  /** @param {number} n @param {number[]} quanta of length and velocity @param {number[]} period */
-  constructor(n, [length, speed], period) {
+  /** @param {Scene} scene @param {number[]} quanta of length and velocity */
+  constructor(scene, [length, speed]) {
+    const { n, about } = scene;
     this.n = n;
     this.length = length;
     this.speed = speed;
-    this.period = period;
+    this.period = about.period;
+    this.impacts = new Impacts(scene);
     this.x = new Float64Array(3 * n);
     this.v = new Float64Array(3 * n);
+    this.fall = new Float64Array(3 * n);
+    this.rest = new Float64Array(n); // time from a sphere's last impact until the frame
+    /** @type {Uint32Array} */ this.counts = new Uint32Array(n);
   }
 
   /**
-   * Go on to the next frame. `miss` says what the prediction misses, in quanta.
+   * Go on to the next frame. `missed…` says what the prediction misses, in quanta.
    * @param {number} step @param {number[]} gravity @param {Uint32Array} counts
    * @param {(at: number, predicted: number) => number} missedSpeed
    * @param {(at: number, predicted: number) => number} missedPlace
    */
   advance(step, gravity, counts, missedSpeed, missedPlace) {
-    const { n, x, v, length, speed, period } = this;
+    const { n, x, v, fall, rest, length, speed, period } = this;
+    for (let at = 0; at < 3 * n; at++) fall[at] = counts[at % n] & STILL ? 0 : gravity[Math.floor(at / n)];
+    const impulses = counts.map((count, i) => (count - this.counts[i]) & (STILL - 1));
+    this.impacts.fly(x, v, fall, impulses, step, rest);
+    this.counts = counts;
     for (let k = 0; k < 3; k++) {
-      const [fall, side] = [gravity[k] * step, period[k]];
+      const side = period[k];
       for (let i = 0; i < n; i++) {
         const at = k * n + i;
         const before = v[at];
-        const ahead = before + (counts[i] & STILL ? 0 : fall);
+        const ahead = before + fall[at] * rest[i];
         v[at] = ahead + speed * missedSpeed(at, ahead);
-        let place = x[at] + (before + v[at]) * (0.5 * step);
+        let place = x[at] + (before + v[at]) * (0.5 * rest[i]);
         if (side > 0) place = place - side * Math.floor(place / side + 0.5);
         x[at] = place + length * missedPlace(at, place);
       }
@@ -75,23 +85,20 @@ export async function encodeReel({ scene, keyframes, speed }) {
   const { n } = scene;
   const frames = keyframes.length;
   const quanta = quantaOf(scene, keyframes);
-  const guide = new Guide(n, quanta, scene.about.period);
-  const speeds = new Uint32Array(3 * n * frames);
-  const places = new Uint32Array(3 * n * frames);
-  const counts = new Uint32Array(n * frames);
+  const guide = new Guide(scene, quanta);
+  const changes = changesOf(n, keyframes);
+  const [speeds, places] = [new Misses(n, changes), new Misses(n, changes)];
   keyframes.forEach((frame, f) => {
-    const { position, velocity } = frame;
-    const begin = 3 * n * f;
-    const note = (/** @type {Uint32Array} */ into, /** @type {Float32Array} */ truth, /** @type {number} */ quantum) =>
+    const { t, gravity, counts, position, velocity } = frame;
+    const note = (/** @type {Misses} */ into, /** @type {Float32Array} */ truth, /** @type {number} */ quantum) =>
       (/** @type {number} */ at, /** @type {number} */ predicted) => {
         const miss = Math.floor((truth[3 * (at % n) + Math.floor(at / n)] - predicted) / quantum + 0.5);
         if (!(Math.abs(miss) <= LARGEST)) throw new Error("spheres fly too far or too fast for a replay");
-        into[begin + at] = miss >= 0 ? 2 * miss : -2 * miss - 1;
+        into.numbers[into.next(f, at)] = miss >= 0 ? 2 * miss : -2 * miss - 1;
         return miss;
       };
-    const step = f > 0 ? frame.t - keyframes[f - 1].t : 0;
-    guide.advance(step, frame.gravity, frame.counts, note(speeds, velocity, quanta[1]), note(places, position, quanta[0]));
-    for (let i = 0; i < n; i++) counts[f * n + i] = frame.counts[i] - (f > 0 ? keyframes[f - 1].counts[i] : 0);
+    const step = f > 0 ? t - keyframes[f - 1].t : 0;
+    guide.advance(step, gravity, counts, note(speeds, velocity, quanta[1]), note(places, position, quanta[0]));
   });
   const columns = REEL_COLUMNS.flatMap((name) => keyframes.map(READ[name]));
   const header = { format: REEL_FORMAT, n, frames, quanta, columns: REEL_COLUMNS, speed, scene: scene.bytes.length };
@@ -101,9 +108,9 @@ export async function encodeReel({ scene, keyframes, speed }) {
     text,
     scene.bytes,
     planes(new Float64Array(columns)),
-    planes(counts),
-    planes(speeds),
-    planes(places),
+    planes(changes),
+    planes(speeds.numbers),
+    planes(places.numbers),
   ];
   return through(new CompressionStream("deflate"), /** @type {BlobPart[]} */ (parts));
 }
@@ -119,25 +126,20 @@ export async function decodeReel(data) {
   const message = decode(body.slice(4 + size, start).buffer);
   if (message.kind !== "scene") throw new Error("the scene is missing");
   const { scene } = message;
-  const take = (/** @type {number} */ count, /** @type {number} */ width) => {
-    const numbers = unplaned(body.subarray(start, (start += count * width)), width);
-    return numbers;
-  };
+  const take = (/** @type {number} */ count, /** @type {number} */ width) =>
+    unplaned(body.subarray(start, (start += count * width)), width);
   const table = new Float64Array(take(columns.length * frames, 8));
   const changes = new Uint32Array(take(frames * n, 4));
-  const speeds = new Uint32Array(take(3 * frames * n, 4));
-  const places = new Uint32Array(take(3 * frames * n, 4));
-  const unfolded = (/** @type {number} */ value) => (value % 2 === 0 ? value / 2 : -(value + 1) / 2);
-  const guide = new Guide(n, quanta, scene.about.period);
+  const [speeds, places] = [0, 0].map(() => new Misses(n, changes, new Uint32Array(take(3 * frames * n, 4))));
+  const guide = new Guide(scene, quanta);
   /** @type {Keyframe[]} */ const keyframes = [];
   for (let f = 0; f < frames; f++) {
     const numbers = Object.fromEntries(columns.map((/** @type {string} */ name, /** @type {number} */ c) => [name, table[c * frames + f]]));
     const frame = emptyKeyframe(scene, numbers);
     const last = keyframes[f - 1];
     for (let i = 0; i < n; i++) frame.counts[i] = changes[f * n + i] + (last?.counts[i] ?? 0);
-    const begin = 3 * n * f;
     const step = last === undefined ? 0 : frame.t - last.t;
-    guide.advance(step, frame.gravity, frame.counts, (at) => unfolded(speeds[begin + at]), (at) => unfolded(places[begin + at]));
+    guide.advance(step, frame.gravity, frame.counts, (at) => speeds.read(f, at), (at) => places.read(f, at));
     for (let k = 0; k < 3; k++) {
       for (let i = 0; i < n; i++) {
         frame.position[3 * i + k] = guide.x[k * n + i];
@@ -148,6 +150,38 @@ export async function decodeReel(data) {
     keyframes.push(frame);
   }
   return { scene, keyframes, speed };
+}
+
+/** How each sphere's count has changed since the frame before. @param {number} n @param {Keyframe[]} keyframes */
+function changesOf(n, keyframes) {
+  const changes = new Uint32Array(n * keyframes.length);
+  keyframes.forEach(({ counts }, f) => {
+    for (let i = 0; i < n; i++) changes[f * n + i] = counts[i] - (f > 0 ? keyframes[f - 1].counts[i] : 0);
+  });
+  return changes;
+}
+
+/** What predictions miss, folded: first where counts have changed, then where they have not. */
+class Misses {
+  /** @param {number} n @param {Uint32Array} changes @param {Uint32Array} [numbers] */
+  constructor(n, changes, numbers = new Uint32Array(3 * changes.length)) {
+    this.n = n;
+    this.changes = changes;
+    this.numbers = numbers;
+    this.hit = 0;
+    this.free = 3 * changes.reduce((hits, change) => hits + (change === 0 ? 0 : 1), 0);
+  }
+
+  /** Where the next number stands. @param {number} f frame @param {number} at */
+  next(f, at) {
+    return this.changes[f * this.n + (at % this.n)] === 0 ? this.free++ : this.hit++;
+  }
+
+  /** @param {number} f frame @param {number} at */
+  read(f, at) {
+    const value = this.numbers[this.next(f, at)];
+    return value % 2 === 0 ? value / 2 : -(value + 1) / 2;
+  }
 }
 
 /** @param {Scene} scene @param {Record<string, number>} numbers @returns {Keyframe} */

@@ -32,7 +32,7 @@ class PortSocket {
   }
 }
 
-/** The port comes with the first message from the notebook, once. */
+/** The port comes with the first message from the notebook, which is asked for it below. */
 addEventListener("message", ({ data, ports: [port] }) => {
   if (data !== "carom" || port === undefined) return;
   const call = () => /** @type {any} */ (new PortSocket(port));
@@ -47,3 +47,4 @@ addEventListener("message", ({ data, ports: [port] }) => {
     },
   }));
 }, { once: true });
+parent.postMessage("carom", "*");

@@ -17,7 +17,7 @@ export const WRONG_TOKEN = 4001;
 export const SCENE_HEADER_BYTES = 24;
 export const FRAME_HEADER_BYTES = 176;
 export const SPHERE_BYTES = 28;
-export const REEL_FORMAT = 1;
+export const REEL_FORMAT = 2;
 export const REEL_COLUMNS = ["t", "gravity_x", "gravity_y", "gravity_z", "kinetic", "potential", "dissipated", "drift", "collisions", "wall_collisions", "momentum_x", "momentum_y", "momentum_z", "temperature"];
 /** Where each number of a message's header stands, in bytes. */
 export const AT = {
