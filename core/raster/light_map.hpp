@@ -38,7 +38,10 @@ public:
 
     // Puts all sizes together; the finest has everything then.
     void merge();
-    std::vector<float>& finest() { return levels_.back().light; }
+    std::vector<float>& finest() {
+        levels_.back().used = true;  // whoever writes into it
+        return levels_.back().light;
+    }
 
     // Light at a place, 0 to 1 along both sides; after `merge`.
     float at(float u, float v) const {

@@ -170,6 +170,18 @@ TEST(a_light_map_keeps_what_is_drawn_into_any_of_its_sizes) {
     CHECK(map.at(0.4f, 0.6f) == 1);
 }
 
+TEST(a_picture_does_not_remember_the_one_before) {
+    Spheres s;
+    s.add({0, 0, -1}, 0.5, 0xffffff);
+    for (const double contact : {0.0, 0.5}) {
+        Face floor = floor_at(-2);
+        floor.contact = contact;
+        Raster raster(view(), look(), {{floor}, {}, {}});
+        const std::vector<uint8_t> first = drawn(raster, s);
+        CHECK(first == drawn(raster, s));
+    }
+}
+
 TEST(strange_pictures_do_no_harm_and_come_out_the_same_twice) {
     std::mt19937_64 bits(7);
     const auto uniform = [&](double lo, double hi) {

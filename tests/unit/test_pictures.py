@@ -16,7 +16,7 @@ from carom.pictures import look
 from carom.pictures.caption import Legend, _plain, short
 from carom.pictures.eye import lamp
 from carom.pictures.eye import look as look_at
-from carom.pictures.painter import Painter, Style
+from carom.pictures.painter import FLOOR_ONLY_FROM, Painter, Style
 from carom.pictures.png import png
 from carom.pictures.room import Room
 
@@ -273,8 +273,10 @@ def test_notebooks_show_pictures():
     assert "<img" not in overlapping._repr_html_()
 
 
-def test_the_same_picture_twice():
-    state, world = carom.scenes.gas(n=200).build()
+@pytest.mark.parametrize("n", [200, FLOOR_ONLY_FROM + 1])
+def test_the_same_picture_twice(n):
+    # With and without spots under spheres: a picture must not remember the one before.
+    state, world = carom.scenes.gas(n=n).build()
     painter = Painter(state, world, Style(SIZE, color="speed"))
     again = Painter(state, world, Style(SIZE, color="speed"))
     first = painter.paint(state)
