@@ -131,10 +131,11 @@ void Wall::spot(const Ball& ball) {
     });
 }
 
-void Wall::darken(const std::vector<Ball>& balls, const Visibility& seen, Frame& frame) {
+void Wall::light(const std::vector<Ball>& balls) {
     const F3 lamp = view_.direction(look_.lamp);
     const bool shadows = look_.shadows && face_.shade > 0 && dot(lamp, normal_) > 0.05f;
-    if (!shadows && face_.contact <= 0) return;
+    dark_ = shadows || face_.contact > 0;
+    if (!dark_) return;
     shadows_.clear();
     spots_.clear();
     for (const Ball& ball : balls) {
@@ -144,11 +145,16 @@ void Wall::darken(const std::vector<Ball>& balls, const Visibility& seen, Frame&
     shadows_.merge();
     spots_.merge();
     const float shade = float(face_.shade) * look_.shadowed;
-    std::vector<float>& light = spots_.finest();
+    std::vector<float>& all = spots_.finest();
     const std::vector<float>& lamp_light = shadows_.finest();
-    for (size_t k = 0; k < light.size(); ++k) light[k] *= 1 - shade * (1 - lamp_light[k]);
+    for (size_t k = 0; k < all.size(); ++k) all[k] *= 1 - shade * (1 - lamp_light[k]);
+}
+
+void Wall::darken(const Visibility& seen, Frame& frame) const {
+    if (!dark_) return;
     const int samples = view_.samples;
-    for (int j = bounds_.y.first; j <= bounds_.y.last; ++j) {
+    const Span rows = common(bounds_.y, frame.rows);
+    for (int j = rows.first; j <= rows.last; ++j) {
         float* const pixels = frame.row(j);
         const float y = view_.ray_y(float(j));
         for (int i = bounds_.x.first; i <= bounds_.x.last; ++i) {
@@ -184,7 +190,8 @@ void draw(const View& view, const Look& look, const Edge& edge, const Visibility
     if (!(length > 1e-6)) return;
     const double ux = (bx - ax) / length, uy = (by - ay) / length;
     const double reach = 0.5 * look.line_width + 1;
-    const Span rows = span(std::min(ay, by) - reach, std::max(ay, by) + reach, view.height);
+    const Span rows =
+        common(span(std::min(ay, by) - reach, std::max(ay, by) + reach, view.height), frame.rows);
     const Span columns = span(std::min(ax, bx) - reach, std::max(ax, bx) + reach, view.width);
     const int samples = view.samples;
     for (int j = rows.first; j <= rows.last; ++j) {

@@ -14,8 +14,9 @@ public:
 
     // A breath of colour, lightest in the middle, and the grid.
     void paint(Frame& frame) const;
-    // What spheres take away of its light, where it is seen.
-    void darken(const std::vector<Ball>& balls, const Visibility& seen, Frame& frame);
+    // What spheres take away of its light, and where it is seen.
+    void light(const std::vector<Ball>& balls);
+    void darken(const Visibility& seen, Frame& frame) const;
 
 private:
     // Where a ray meets it.
@@ -36,6 +37,7 @@ private:
     F3 along_u_, along_v_;  // u = along_u·d / normal·d for a ray d
     float level_;           // normal · corner
     Bounds bounds_;
+    bool dark_ = false;  // does anything take light away?
     LightMap shadows_, spots_;
 };
 
