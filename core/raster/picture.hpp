@@ -17,6 +17,12 @@
 #define CAROM_WIDE
 #endif
 
+#if defined(__GNUC__)
+#define CAROM_INLINE [[gnu::always_inline]] inline
+#else
+#define CAROM_INLINE inline
+#endif
+
 namespace carom::raster {
 
 struct F3 {

@@ -34,19 +34,22 @@ struct Parts {
     }
 };
 
-// Which samples of the pixels of a row see a sphere.
-CAROM_WIDE void find(const Visibility& seen, int samples, int ball, int row, int first, int n,
+// Which samples of the pixels of a row see a sphere; whether any does.
+CAROM_WIDE bool find(const Visibility& seen, int samples, int ball, int row, int first, int n,
                      uint8_t* __restrict bits) {
     if (samples == 1) {
         const int* const id = seen.ids(row) + first;
-        for (int k = 0; k < n; ++k) bits[k] = id[k] == ball;
-        return;
+        int any = 0;
+        for (int k = 0; k < n; ++k) any |= bits[k] = id[k] == ball;
+        return any;
     }
     const int* const upper = seen.ids(2 * row) + 2 * first;
     const int* const lower = seen.ids(2 * row + 1) + 2 * first;
+    int any = 0;
     for (int k = 0; k < n; ++k)
-        bits[k] = uint8_t((upper[2 * k] == ball) + 2 * (upper[2 * k + 1] == ball) +
-                          4 * (lower[2 * k] == ball) + 8 * (lower[2 * k + 1] == ball));
+        any |= bits[k] = uint8_t((upper[2 * k] == ball) + 2 * (upper[2 * k + 1] == ball) +
+                                 4 * (lower[2 * k] == ball) + 8 * (lower[2 * k + 1] == ball));
+    return any;
 }
 
 }  // namespace
@@ -64,7 +67,9 @@ struct Shading::Batch {
 };
 
 Shading::Shading(const View& view, const Look& look)
-    : view_(view), look_(look), lamp_(view.direction(look.lamp)), up_(view.direction(look.up)) {}
+    : view_(view), look_(look), lamp_(view.direction(look.lamp)), up_(view.direction(look.up)) {
+    for (int i = 0; i < view.width; ++i) rays_.push_back(view.ray_x(float(i)));
+}
 
 // Where all samples of a pixel see the same sphere, it is lit once, in the middle; elsewhere each
 // sphere is lit in the middle of its samples.
@@ -80,18 +85,24 @@ void Shading::paint(const Visibility& seen, const std::vector<int>& visible,
         const int first = bounds.x.first / samples, n = bounds.x.last / samples - first + 1;
         const Span rows = common({bounds.y.first / samples, bounds.y.last / samples}, frame.rows);
         for (int row = rows.first; row <= rows.last; ++row) {
-            find(seen, samples, ball, row, first, n, bits.data());
+            if (!find(seen, samples, ball, row, first, n, bits.data())) continue;
             const float y = view_.ray_y(float(row));
+            float* const pixels = frame.row(row) + 3 * first;
+            int at = batch.count;
             for (int k = 0; k < n; ++k) {
-                if (!bits[k]) continue;
+                // Without a choice: what is not seen is written over.
                 const Part& part = parts.of[bits[k]];
-                const int at = batch.count++;
-                batch.pixel[at] = frame.row(row) + 3 * (first + k);
+                batch.pixel[at] = pixels + 3 * k;
                 batch.weight[at] = part.weight;
-                batch.x[at] = view_.ray_x(float(first + k)) + part.aside * quarter;
+                batch.x[at] = rays_[first + k] + part.aside * quarter;
                 batch.y[at] = y + part.above * quarter;
-                if (batch.count == kBatch) light(batch, balls, ball, casters);
+                at += bits[k] != 0;
+                if (at < kBatch) continue;
+                batch.count = at;
+                light(batch, balls, ball, casters);
+                at = 0;
             }
+            batch.count = at;
         }
         if (batch.count > 0) light(batch, balls, ball, casters);
     }

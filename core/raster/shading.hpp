@@ -23,6 +23,7 @@ private:
     View view_;
     Look look_;
     F3 lamp_, up_;
+    std::vector<float> rays_;  // view.ray_x of each column
 };
 
 }  // namespace carom::raster

@@ -51,20 +51,43 @@ CAROM_WIDE float Casters::dimmed(int first, int last, const Place& p, const Look
            ((left[4] * left[5]) * (left[6] * left[7]));
 }
 
+// Which entries' shadows reach a ball: counts them and writes them down.
+CAROM_WIDE int Casters::reaching(int first, int last, const Place& p, float radius,
+                                 const Look& look) {
+    const int n = last - first;
+    const float *const a = &a_[first], *const b = &b_[first];
+    const float *const height = &height_[first], *const r = &radius_[first];
+    uint8_t* __restrict const counts = counts_.data();
+    for (int k = 0; k < n; ++k) {
+        const float da = a[k] - p.a, db = b[k] - p.b;
+        const float wide = half_shadow(look, height[k] - p.height), reach = radius + r[k] + wide;
+        counts[k] = int(da * da + db * db < reach * reach) &
+                    int(r[k] * r[k] >= kFaintest * wide * wide);
+    }
+    int many = 0;
+    for (int k = 0; k < n; ++k) {
+        reaching_[many] = inside_[first + k];
+        many += counts[k];
+    }
+    return many;
+}
+
 // Half-shadows wider than the ball are the same all over it: those are asked at its middle. The
 // others, close behind what casts them, are left to each place on the ball.
 void Casters::ask(int i, const std::vector<Ball>& balls, const Look& look) {
     const Place& p = places_[i];
     const float radius = balls[i].radius;
     // Entries are sorted by height: first those far above, then those near, then those behind.
+    const bool all_near = look.soft + kLamp * look.deepest <= radius;
+    const float far = std::max(radius - look.soft, 0.0f) / kLamp;
+    const auto above = [&](int cell, float height) {
+        const float* const all = height_.data();
+        return int(std::partition_point(all + starts_[cell], all + starts_[cell + 1],
+                                        [&](float its) { return its > height; }) -
+                   all);
+    };
     const auto far_end = [&](int cell) {
-        const float* const from = height_.data();
-        return int(std::partition_point(from + starts_[cell], from + starts_[cell + 1],
-                                        [&](float height) {
-                                            return height > p.height &&
-                                                   half_shadow(look, height - p.height) > radius;
-                                        }) -
-                   from);
+        return all_near ? starts_[cell] : above(cell, p.height + far);
     };
     const int middle = touched(p.b, 0, 1).low * cells_ + touched(p.a, 0, 0).low;
     left_[i] = dimmed(starts_[middle], far_end(middle), p, look);
@@ -72,13 +95,9 @@ void Casters::ask(int i, const std::vector<Ball>& balls, const Look& look) {
     const Cells x = touched(p.a, radius, 0), y = touched(p.b, radius, 1);
     for (int row = y.low; row <= y.high; ++row) {
         for (int cell = row * cells_ + x.low; cell <= row * cells_ + x.high; ++cell) {
-            for (int k = far_end(cell); k < starts_[cell + 1]; ++k) {
-                const float gap = height_[k] - p.height;
-                if (gap <= 0) break;
-                const float da = a_[k] - p.a, db = b_[k] - p.b, r = radius_[k];
-                const float wide = half_shadow(look, gap), reach = radius + r + wide;
-                if (da * da + db * db >= reach * reach || r * r < kFaintest * wide * wide) continue;
-                const int j = inside_[k];
+            const int many = reaching(far_end(cell), above(cell, p.height), p, radius, look);
+            for (int k = 0; k < many; ++k) {
+                const int j = reaching_[k];
                 if (asked_[j] == i) continue;  // met in another cell
                 asked_[j] = i;
                 all_.push_back(j);
@@ -120,6 +139,8 @@ void Casters::sort_into_cells(const std::vector<Ball>& balls, const Look& look) 
         }
     };
     each([&](int cell, int) { ++starts_[cell + 1]; });
+    counts_.resize(*std::max_element(starts_.begin(), starts_.end()));
+    reaching_.resize(counts_.size() + 1);
     for (size_t c = 1; c < starts_.size(); ++c) starts_[c] += starts_[c - 1];
     const size_t all = starts_.back();
     inside_.resize(all);

@@ -26,6 +26,19 @@ inline float hidden(float s, float r, float wide) {
     return most * (1 - share * share * (3 - 2 * share));
 }
 
+// The same for many places behind one thing.
+struct HalfShadow {
+    float inner, per, most;
+    HalfShadow(float r, float wide)
+        : inner(std::abs(r - wide)),
+          per(1 / (r + wide - inner)),
+          most(r < wide ? r * r / (wide * wide) : 1.0f) {}
+    float dark(float s) const {
+        const float share = clamp((s - inner) * per);
+        return most * (1 - share * share * (3 - 2 * share));
+    }
+};
+
 class Casters {
 public:
     // lamp: unit vector towards it. Both know only balls about which `ask` has asked.
@@ -50,6 +63,7 @@ private:
     Cells touched(float at, float reach, int axis) const;
     void sort_into_cells(const std::vector<Ball>& balls, const Look& look);
     float dimmed(int first, int last, const Place& p, const Look& look) const;
+    int reaching(int first, int last, const Place& p, float radius, const Look& look);
 
     static constexpr int kLanes = 8;  // entries to a step of the loop
 
@@ -58,9 +72,11 @@ private:
     float low_[2] = {}, per_[2] = {};
     int cells_ = 1;            // along each axis
     std::vector<int> starts_;  // of the cells' entries
-    // Spheres by cell, from the lamp on: who, and what is asked of them in a row.
+    // Spheres by cell, from the lamp on.
     std::vector<int> inside_;
     std::vector<float> a_, b_, height_, radius_;
+    std::vector<uint8_t> counts_;  // those of a cell whose shadows reach a ball: which, and who
+    std::vector<int> reaching_;
     std::vector<int> asked_;  // by whom last
     std::vector<int> begin_, end_, all_;
     std::vector<float> left_;

@@ -88,6 +88,7 @@ CAROM_WIDE bool Visibility::add(int index, F3 c, float radius) {
     const bool bounded = r < 0.95f;  // else its outline need not be an ellipse
     const float middle = 0.5f * float(view_.width) - 0.5f;
     const float p2 = r2 - 1 - y0 * y0;
+    const float per_root = -1 / (p2 * pixel), at_x0 = x0 / pixel + middle;
     int any = 0;
     for (int row = bounds.y.first; row <= bounds.y.last; ++row) {
         const float y = view_.ray_y(float(row)), dy = y - y0;
@@ -97,9 +98,8 @@ CAROM_WIDE bool Visibility::add(int index, F3 c, float radius) {
         if (bounded) {
             const float inside = p1 * p1 - p2 * p0;
             if (inside < 0) continue;
-            const float root = std::sqrt(inside);
-            s = span(((p1 - root) / -p2 + x0) / pixel + middle,
-                     ((p1 + root) / -p2 + x0) / pixel + middle, view_.width);
+            const float at = p1 * per_root + at_x0, half = std::sqrt(inside) * per_root;
+            s = span(at - half, at + half, view_.width);
         }
         const int first = s.first / kLanes * kLanes;
         const int count = (s.last - first + kLanes) / kLanes * kLanes;
