@@ -125,9 +125,9 @@ void Casters::sort_into_cells(const std::vector<Ball>& balls, const Look& look) 
         low_[1] = std::min(low_[1], p.b), high[1] = std::max(high[1], p.b);
         sum += reach(i);
     }
-    // As large as what is put into them, about.
+    // Larger than what is put into them, by half: such cells cost least.
     const float size = std::max(high[0] - low_[0], high[1] - low_[1]);
-    cells_ = int(clamp(size * float(n) / std::max(sum, 1e-30f), 1, kMostCells));
+    cells_ = int(clamp(0.7f * size * float(n) / std::max(sum, 1e-30f), 1, kMostCells));
     for (int k = 0; k < 2; ++k) per_[k] = float(cells_) / std::max(high[k] - low_[k], 1e-30f);
     starts_.assign(size_t(cells_) * cells_ + 1, 0);
     const auto each = [&](auto&& use) {

@@ -154,6 +154,9 @@ class _Job:
         if not self.path.parent.is_dir():
             msg = f"there is no folder {self.path.parent}; make it first, or write elsewhere"
             raise FileError(msg)
+        if self.path.is_dir():
+            msg = f"{self.path} is a folder; write elsewhere"
+            raise FileError(msg)
 
     @property
     def suffix(self) -> str:
