@@ -32,10 +32,11 @@ public:
     void clear();
 
     // Takes light away around (u, v), places on the wall as lengths from its corner, as far as
-    // `reach` along both sides. dark(du, dv): what is taken; it changes over a length `scale`. To be
-    // part of whoever calls it, for his instruction set.
+    // `reach` along both sides. dark(du, dv): what is taken; it changes over a length `scale`. To
+    // be part of whoever calls it, for his instruction set.
     template <class Dark>
-    CAROM_INLINE void splat(float u, float v, float reach_u, float reach_v, float scale, Dark dark) {
+    CAROM_INLINE void splat(float u, float v, float reach_u, float reach_v, float scale,
+                            Dark dark) {
         Level& level = level_for(scale);
         const int n = level.n;
         const float step_u = side_u_ / float(n), step_v = side_v_ / float(n);

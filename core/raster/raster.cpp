@@ -51,7 +51,8 @@ void Raster::place(const std::vector<Vec3>& position, const std::vector<double>&
         const int i = order_[k].second;
         const auto part = [&](int shift) { return float(color[i] >> shift & 255) / 255; };
         Ball& ball = balls_[k];
-        ball = {view_.place(position[i]), float(radius[i]), {}, 1, {}, {part(16), part(8), part(0)}};
+        ball = {view_.place(position[i]),    float(radius[i]), {}, 1, {},
+                {part(16), part(8), part(0)}};
         ball.skin = ball.color * ball.color;
     }
 }
@@ -64,7 +65,8 @@ void Raster::sort_into_bands() {
         for (size_t k = 0; k < balls_.size(); ++k) {
             const Span rows = seen_.rows(balls_[k].center, balls_[k].radius);
             if (rows.first > rows.last) continue;
-            for (int band = rows.first / band_; band <= rows.last / band_; ++band) use(band, int(k));
+            for (int band = rows.first / band_; band <= rows.last / band_; ++band)
+                use(band, int(k));
         }
     };
     each([&](int band, int) { ++starts_[band + 1]; });

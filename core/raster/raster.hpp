@@ -47,8 +47,8 @@ private:
     std::vector<int> visible_;                  // those of a band that are seen
     std::vector<uint8_t> shaded_;               // have crowd and casters been asked?
     std::optional<Crowd> crowd_;
-    Frame still_;                               // what lies behind all spheres
-    Frame frame_;                               // a band of the picture
+    Frame still_;  // what lies behind all spheres
+    Frame frame_;  // a band of the picture
     std::mutex busy_;
 };
 

@@ -58,8 +58,8 @@ CAROM_WIDE bool find(const Visibility& seen, int samples, int ball, int row, int
 struct Shading::Batch {
     int count = 0;
     float* pixel[kBatch] = {};
-    float weight[kBatch] = {};             // share of the pixel
-    float x[kBatch] = {}, y[kBatch] = {};  // the ray is (x, y, 1)
+    float weight[kBatch] = {};                 // share of the pixel
+    float x[kBatch] = {}, y[kBatch] = {};      // the ray is (x, y, 1)
     float px[kBatch], py[kBatch], pz[kBatch];  // the place
     float nx[kBatch], ny[kBatch], nz[kBatch];  // the normal
     float seen[kBatch], left[kBatch];          // of the lamp; of all light, in the crowd

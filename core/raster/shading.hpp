@@ -16,7 +16,8 @@ public:
 
 private:
     struct Batch;
-    void light(Batch& batch, const std::vector<Ball>& balls, int ball, const Casters& casters) const;
+    void light(Batch& batch, const std::vector<Ball>& balls, int ball,
+               const Casters& casters) const;
     void shadow(Batch& batch, const std::vector<Ball>& balls, int ball,
                 const Casters& casters) const;
 

@@ -39,7 +39,7 @@ private:
     float level_;           // normal · corner
     Bounds bounds_;
     std::vector<Span> columns_;  // of each row, where it is seen
-    bool dark_ = false;  // does anything take light away?
+    bool dark_ = false;          // does anything take light away?
     LightMap shadows_, spots_;
     std::vector<uint16_t> light_;  // what both leave, of 65535
 };

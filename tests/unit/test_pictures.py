@@ -6,16 +6,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image
+from PIL import Image, ImageFont
 from tests.unit.seen import luminance
 
 import carom
 from carom.color import packed
 from carom.errors import FileError, InputError, UnknownNameError
 from carom.pictures import look
-from carom.pictures.caption import Legend, _plain, short
+from carom.pictures.caption import Caption, Legend, short
 from carom.pictures.eye import lamp
 from carom.pictures.eye import look as look_at
+from carom.pictures.letters import Letters, spelled, wide_font
 from carom.pictures.painter import FLOOR_ONLY_FROM, Painter, Style
 from carom.pictures.png import png
 from carom.pictures.room import Room
@@ -239,11 +240,58 @@ def test_words_stay_inside(size):
     assert y.max() < size[1] - 4
 
 
-def test_numbers_and_titles_have_letters_that_the_font_has():
-    assert [short(v) for v in (0, 0.02, 500, 2e6, 3.14159, 1e-5)] == [
-        "0", "0.02", "500", "2e6", "3.14", "1e-5",
+def test_numbers_are_short():
+    assert [short(v) for v in (0, 0.02, 500, 2e6, 3.14159, 1e-5, 1e5)] == [
+        "0", "0.02", "500", "2e6", "3.14", "1e-5", "1e5",
     ]  # fmt: skip
-    assert _plain("Größe × 3 – π’s “x”") == "Grosse x 3 - pi's x"
+
+
+TITLE = "Übung φ = λ₀ — é ñ, 粒子"
+
+
+def test_a_title_has_its_letters_where_matplotlib_has_brought_a_font():
+    letters = Letters(TITLE, ImageFont)
+    assert letters.text == "Übung φ = λ₀ — é ñ, ??"
+    some = letters.sized(20)
+    assert bytes(some.getmask("φ")) != bytes(some.getmask("\uffff"))
+    # Signs that lose nothing do without it, so that words look as they always do.
+    assert Letters("Two × 3 – “π’s”", ImageFont).text == "Two × 3 – “π’s”"
+    plain = Letters("Newton’s cradle × 3 – …", ImageFont)
+    assert plain.text == "Newton's cradle x 3 - ..."
+    assert plain.sized(20).getname() == ImageFont.load_default(20).getname()
+
+
+def test_without_it_they_are_spelled(monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "matplotlib", None)
+    assert wide_font() is None
+    letters = Letters("Größe × 3: " + TITLE, ImageFont)
+    assert letters.text == "Grosse x 3: Ubung phi = lambda0 - e n, ??"
+    assert letters.sized(20).getname() == ImageFont.load_default(20).getname()
+    assert "".join(map(spelled, "ΔΩς½Å−\n\u0301\x00")) == "DeltaOmegasigma1/2A-"
+
+
+def test_any_title_can_be_drawn():
+    described = scene((0, 0, 0), title=TITLE + "\n\t\x00\ud800🎱" + 200 * "x")
+    assert drawn(described, caption=True).shape == (SIZE[1], SIZE[0], 3)
+
+
+def test_words_over_a_picture_are_as_if_drawn_on_it():
+    described = carom.scenes.phase_4()
+    state, world = described.build()
+    style = Style.of(described, size=(640, 360))
+    pixels = Painter(state, world, style).paint(state)
+    words = Caption("Words", Legend.of(state, style), style, 0.1)
+    first = words.write(pixels, 1.0, 500.0)
+    drawn_on_it = words._draw_still(pixels, 500.0).astype(int)
+    clock = np.s_[:60, 500:]
+    difference = np.abs(first - drawn_on_it)
+    difference[clock] = 0
+    assert difference.max() <= 2
+    assert np.array_equal(first, words.write(pixels, 1.0, 500.0))
+    # The clock goes on, and so does the end of a scale.
+    later, longer = words.write(pixels, 2.0, 500.0), words.write(pixels, 1.0, 1000.0)
+    assert [changed[clock].any() for changed in (later != first, longer != first)] == [True, False]
+    assert [changed[300:].any() for changed in (later != first, longer != first)] == [False, True]
 
 
 # Files, notebooks, mistakes.
