@@ -61,8 +61,8 @@ CAROM_WIDE int Casters::reaching(int first, int last, const Place& p, float radi
     for (int k = 0; k < n; ++k) {
         const float da = a[k] - p.a, db = b[k] - p.b;
         const float wide = half_shadow(look, height[k] - p.height), reach = radius + r[k] + wide;
-        counts[k] =
-            int(da * da + db * db < reach * reach) & int(r[k] * r[k] >= kFaintest * wide * wide);
+        const bool faint = r[k] * r[k] < kFaintest * wide * wide;
+        counts[k] = uint8_t(int(da * da + db * db < reach * reach) & int(!faint));
     }
     int many = 0;
     for (int k = 0; k < n; ++k) {
