@@ -6,18 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image, ImageFont
+from PIL import Image
 from tests.unit.seen import luminance
 
 import carom
 from carom.color import packed
 from carom.errors import FileError, InputError, UnknownNameError
 from carom.pictures import look
-from carom.pictures.caption import Caption, Legend, short
 from carom.pictures.eye import lamp
 from carom.pictures.eye import look as look_at
-from carom.pictures.letters import Letters, spelled, wide_font
-from carom.pictures.painter import FLOOR_ONLY_FROM, Painter, Style
+from carom.pictures.painter import FLOOR_ONLY_FROM, Painter, Style, _faces
 from carom.pictures.png import png
 from carom.pictures.room import Room
 
@@ -148,6 +146,37 @@ def test_everything_is_in_sight(name):
             assert 0 < y < size[1]
 
 
+def test_straight_from_above_left_and_right_keep_their_meaning():
+    eye = eye_of(scene((0, 0, 0)), camera=carom.Camera((0, 0, 30)))
+    assert np.degrees(np.arccos(-eye.forward @ eye.above)) == pytest.approx(1.76, abs=0.01)
+    assert np.abs(eye.right) == pytest.approx([1, 0, 0])
+
+
+def test_gravity_that_is_nearly_along_an_axis_is_along_it():
+    assert eye_of(scene((0, 0, 0), gravity=(1e-12, 0, -2))).above.tolist() == [0, 0, 1]
+    assert eye_of(scene((0, 0, 0), gravity=(0.1, 0, -2))).above[0] < -0.04
+
+
+def test_of_two_spherical_walls_the_inner_one_is_in_sight():
+    state, world = scene((0, 0, 0), walls=[carom.Sphere(5), carom.Sphere(3)]).build()
+    assert Room.of(state, world).margin == 3
+
+
+def test_lines_of_large_pictures_are_wider():
+    described = scene((0, 0, 0), radius=0.1)
+    small, large = (drawn(described, size=(640 * k, 720 * k)) for k in (1, 2))
+    shown = [luminance(p)[: 200 * k].std() for k, p in ((1, small), (2, large))]
+    assert shown[1] == pytest.approx(shown[0], rel=0.08)
+
+
+def test_only_small_crowds_have_spots_on_side_walls():
+    state, world = scene((0, 0, 0)).build()
+    room, style = Room.of(state, world), Style(SIZE)
+    eye = look_at(room, world.gravity, SIZE, None)
+    for n, spots in ((FLOOR_ONLY_FROM, 3), (FLOOR_ONLY_FROM + 1, 1)):
+        assert np.count_nonzero(_faces(room, eye, style, 0.1, n)[:, -1]) == spots
+
+
 # Colours: the same as the page's.
 
 
@@ -206,92 +235,27 @@ def test_a_sphere_in_the_light_has_its_own_color():
     assert blue.max() / blue.min() < 1.25  # the same hue, whatever the light
 
 
+def test_fixed_spheres_have_no_energy():
+    state = carom.State.empty(2)
+    state.velocity[:, 0] = 3.0
+    state.fixed[:] = [True, False]
+    state.color[:] = 0x4C9BE8
+    still, moving = look.colors_of(state, "energy", 10.0).tolist()
+    assert (still, moving != still) == (0xE8E8E8, True)
+
+
+def test_scales_know_what_falling_will_bring():
+    state, world = scene((0, 0, -4), (0, 0, 4), gravity=(0, 0, -1)).build()
+    ends = look.scales(state, world, paper=False)
+    fall = 8.0
+    assert ends["full_energy"] == pytest.approx(state.mass[0] * fall, rel=0.5)
+    assert ends["full_speed"] == pytest.approx(2 * fall**0.5, rel=0.5)
+    assert look.scales(state, world, paper=True)["full_energy"] == 500
+
+
 @pytest.mark.parametrize(("most", "end"), [(0, 5), (5, 5), (6, 10), (11, 20), (1234, 2000)])
 def test_the_scale_of_collisions_ends_at_a_round_number(most, end):
     assert look.full_count(np.array([0, most], np.uint32)) == end
-
-
-# Words.
-
-
-def test_words_say_what_colors_mean():
-    described = carom.scenes.gas(n=30)
-    state, _ = described.build()
-    for color, bars, dots in (("energy", 1, 0), ("speed", 1, 0), ("species", 0, 1), ("own", 0, 0)):
-        legend = Legend.of(state, Style.of(described, color=color))
-        assert (len(legend.bars), len(legend.dots)) == (bars, dots)
-    phase = carom.scenes.phase_4()
-    assert len(Legend.of(phase.build()[0], Style.of(phase)).bars) == 5
-    plain, worded = (drawn(described, caption=caption, size=(640, 360)) for caption in (0, 1))
-    changed = np.abs(plain.astype(int) - worded).max(axis=2) > 40
-    corners = changed[:40, :200], changed[:40, -120:], changed[-60:, :200]
-    assert all(corner.sum() > 50 for corner in corners)
-    assert not changed[60:280].any()
-
-
-@pytest.mark.parametrize("size", [(320, 180), (640, 480), (1920, 1080), (360, 640)])
-def test_words_stay_inside(size):
-    sim = carom.Simulation(carom.scenes.phase_4())
-    plain, worded = (sim.picture(size=size, caption=c).pixels.astype(int) for c in (False, True))
-    y, x = np.nonzero(np.abs(plain - worded).max(axis=2))
-    assert x.min() > 3
-    assert y.min() > 3
-    assert x.max() < size[0] - 4
-    assert y.max() < size[1] - 4
-
-
-def test_numbers_are_short():
-    assert [short(v) for v in (0, 0.02, 500, 2e6, 3.14159, 1e-5, 1e5)] == [
-        "0", "0.02", "500", "2e6", "3.14", "1e-5", "1e5",
-    ]  # fmt: skip
-
-
-TITLE = "Übung φ = λ₀ — é ñ, 粒子"
-
-
-def test_a_title_has_its_letters_where_matplotlib_has_brought_a_font():
-    letters = Letters(TITLE, ImageFont)
-    assert letters.text == "Übung φ = λ₀ — é ñ, ??"
-    some = letters.sized(20)
-    assert bytes(some.getmask("φ")) != bytes(some.getmask("\uffff"))
-    # Signs that lose nothing do without it, so that words look as they always do.
-    assert Letters("Two × 3 – “π’s”", ImageFont).text == "Two × 3 – “π’s”"
-    plain = Letters("Newton’s cradle × 3 – …", ImageFont)
-    assert plain.text == "Newton's cradle x 3 - ..."
-    assert plain.sized(20).getname() == ImageFont.load_default(20).getname()
-
-
-def test_without_it_they_are_spelled(monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "matplotlib", None)
-    assert wide_font() is None
-    letters = Letters("Größe × 3: " + TITLE, ImageFont)
-    assert letters.text == "Grosse x 3: Ubung phi = lambda0 - e n, ??"
-    assert letters.sized(20).getname() == ImageFont.load_default(20).getname()
-    assert "".join(map(spelled, "ΔΩς½Å−\n\u0301\x00")) == "DeltaOmegasigma1/2A-"
-
-
-def test_any_title_can_be_drawn():
-    described = scene((0, 0, 0), title=TITLE + "\n\t\x00\ud800🎱" + 200 * "x")
-    assert drawn(described, caption=True).shape == (SIZE[1], SIZE[0], 3)
-
-
-def test_words_over_a_picture_are_as_if_drawn_on_it():
-    described = carom.scenes.phase_4()
-    state, world = described.build()
-    style = Style.of(described, size=(640, 360))
-    pixels = Painter(state, world, style).paint(state)
-    words = Caption("Words", Legend.of(state, style), style, 0.1)
-    first = words.write(pixels, 1.0, 500.0)
-    drawn_on_it = words._draw_still(pixels, 500.0).astype(int)
-    clock = np.s_[:60, 500:]
-    difference = np.abs(first - drawn_on_it)
-    difference[clock] = 0
-    assert difference.max() <= 2
-    assert np.array_equal(first, words.write(pixels, 1.0, 500.0))
-    # The clock goes on, and so does the end of a scale.
-    later, longer = words.write(pixels, 2.0, 500.0), words.write(pixels, 1.0, 1000.0)
-    assert [changed[clock].any() for changed in (later != first, longer != first)] == [True, False]
-    assert [changed[300:].any() for changed in (later != first, longer != first)] == [False, True]
 
 
 # Files, notebooks, mistakes.
@@ -307,6 +271,10 @@ def test_png_files_hold_the_pixels(tmp_path):
         picture.save(tmp_path / "a.jpg")
     with pytest.raises(FileError, match=r"cannot write .*No such file"):
         picture.save(tmp_path / "none" / "a.png")
+    (tmp_path / "b.png").mkdir()
+    with pytest.raises(FileError, match=r"cannot write .*b.png: Is a directory"):
+        picture.save(tmp_path / "b.png")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.png", "b.png"]
 
 
 def test_notebooks_show_pictures():

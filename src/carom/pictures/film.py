@@ -184,8 +184,8 @@ class Film:
     ) -> None:
         whole = False
         try:
-            self._settle()
-            if self.frames and not isinstance(error, FileError):
+            self._settle()  # raises again what could not be written
+            if self.frames:
                 self._write(self._stream.encode(None))
                 whole = True
         finally:
