@@ -152,6 +152,12 @@ def test_straight_from_above_left_and_right_keep_their_meaning():
     assert np.abs(eye.right) == pytest.approx([1, 0, 0])
 
 
+def test_a_camera_may_stand_very_close_to_its_target():
+    camera = carom.Camera((1e-200, 0, 0))
+    assert eye_of(scene((0, 0, 0)), camera=camera).forward == pytest.approx([-1, 0, 0])
+    assert drawn(scene((0, 0, 0)), camera=camera).shape == (SIZE[1], SIZE[0], 3)
+
+
 def test_gravity_that_is_nearly_along_an_axis_is_along_it():
     assert eye_of(scene((0, 0, 0), gravity=(1e-12, 0, -2))).above.tolist() == [0, 0, 1]
     assert eye_of(scene((0, 0, 0), gravity=(0.1, 0, -2))).above[0] < -0.04

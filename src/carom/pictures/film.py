@@ -16,6 +16,7 @@ from carom.pictures.painter import Pixels
 
 BLUR = {"draft": 28, "good": 18}  #: constant rate factor of H.264, by quality
 RATES = {"draft": 2_000_000, "good": 12_000_000}  #: bit/s where there is no H.264
+SLOWEST = 0.01  #: pictures per second; files count only so long that a picture stays
 FASTEST = 240  #: pictures per second of an MP4
 FASTEST_GIF = 50  #: pictures per second: browsers slow down faster ones
 BT709 = 1  #: the colours of high-definition video (ITU-T H.273, table 2, 3 and 4)
@@ -51,6 +52,9 @@ def check(suffix: str, size: tuple[int, int], fps: float) -> None:
     kind, most = ("GIF", FASTEST_GIF) if suffix == ".gif" else ("film", FASTEST)
     if fps > most:
         msg = f"fps is {fps:g}; a {kind} shows {most} pictures per second at most"
+        raise InputError(msg)
+    if fps < SLOWEST:
+        msg = f"fps is {fps:g}; a {kind} shows {SLOWEST:g} pictures per second at least"
         raise InputError(msg)
     if suffix != ".gif" and (size[0] % 2 or size[1] % 2):
         even = f"{size[0] + size[0] % 2}x{size[1] + size[1] % 2}"
