@@ -24,6 +24,7 @@ Crowd::Crowd(const Vec3& low, const Vec3& high, double cell, const Vec3& up) {
         low_[k] = l[k];
         size_[k] = std::max(h[k] - l[k], 1e-9);
         cells_[k] = int(std::clamp(std::round(size_[k] / cell), 2.0, double(kMost)));
+        per_[k] = cells_[k] / size_[k];
         if (std::abs(u[k]) > std::abs(u[axis_])) axis_ = k;
     }
     upwards_ = u[axis_] > 0;
@@ -48,15 +49,13 @@ void Crowd::fill(const std::vector<Vec3>& position, const std::vector<double>& r
 
 void Crowd::spread(const std::vector<Vec3>& position, const std::vector<double>& radius, size_t n) {
     std::fill(hidden_.begin(), hidden_.end(), 0.0f);
-    double per[3];
-    for (int k = 0; k < 3; ++k) per[k] = cells_[k] / size_[k];
     for (size_t i = 0; i < n; ++i) {
         const double x[3] = {position[i].x, position[i].y, position[i].z};
-        const double area = kPi * radius[i] * radius[i] * per[0] * per[1] * per[2];
+        const double area = kPi * radius[i] * radius[i] * per_[0] * per_[1] * per_[2];
         int cell[3];
         double far[3];
         for (int k = 0; k < 3; ++k) {
-            const double at = std::clamp((x[k] - low_[k]) * per[k] - 0.5, 0.0, cells_[k] - 1.001);
+            const double at = std::clamp((x[k] - low_[k]) * per_[k] - 0.5, 0.0, cells_[k] - 1.001);
             cell[k] = int(at);
             far[k] = at - cell[k];
         }
@@ -95,23 +94,20 @@ float Crowd::left(const Vec3& place) const {
     int cell[3];
     float far[3];
     for (int k = 0; k < 3; ++k) {
-        const double at = (x[k] - low_[k]) * cells_[k] / size_[k] - 0.5;
+        const double at = (x[k] - low_[k]) * per_[k] - 0.5;
         const double inside = std::clamp(at, 0.0, cells_[k] - 1.001);
         cell[k] = int(inside);
         far[k] = float(inside - cell[k]);
     }
-    float sum = 0;
-    for (int bits = 0; bits < 8; ++bits) {
-        float part = 1;
-        size_t at = 0;
-        for (int k = 2; k >= 0; --k) {
-            const int next = bits >> k & 1;
-            part *= next ? far[k] : 1 - far[k];
-            at = at * cells_[k] + cell[k] + next;
-        }
-        sum += part * light_[at];
-    }
-    return sum;
+    const int row = cells_[0], layer = cells_[0] * cells_[1];
+    const float* const light = &light_[size_t(cell[2]) * layer + cell[1] * row + cell[0]];
+    const auto along = [&](const float* at) { return at[0] + (at[1] - at[0]) * far[0]; };
+    const auto across = [&](const float* at) {
+        const float near_row = along(at);
+        return near_row + (along(at + row) - near_row) * far[1];
+    };
+    const float near_layer = across(light);
+    return near_layer + (across(light + layer) - near_layer) * far[2];
 }
 
 }  // namespace carom::raster

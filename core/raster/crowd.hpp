@@ -24,7 +24,7 @@ private:
     void spread(const std::vector<Vec3>& position, const std::vector<double>& radius, size_t n);
     void sweep(int axis, bool forward, float share);
 
-    double low_[3], size_[3];
+    double low_[3], size_[3], per_[3];
     int cells_[3];
     int axis_;
     bool upwards_;

@@ -10,6 +10,20 @@
 
 namespace carom::raster {
 
+// What a map of n × n places says at one between them, 0 to 1 along both sides.
+template <class Number>
+CAROM_INLINE float between(const Number* light, int n, float u, float v) {
+    const float most = float(n - 1);
+    const float x = clamp(u * float(n) - 0.5f, 0, most);
+    const float y = clamp(v * float(n) - 0.5f, 0, most);
+    const int i = std::min(int(x), n - 2), j = std::min(int(y), n - 2);
+    const float right = x - float(i), far = y - float(j);
+    const Number* const row = light + (j * n + i);
+    const Number* const next = row + n;
+    const float near_row = float(row[0]) + float(row[1] - row[0]) * right;
+    return near_row + (float(next[0]) + float(next[1] - next[0]) * right - near_row) * far;
+}
+
 class LightMap {
 public:
     // finest: length over which the finest things drawn change; sides: of the wall.
@@ -18,9 +32,11 @@ public:
     void clear();
 
     // Takes light away around (u, v), places on the wall as lengths from its corner, as far as
-    // `reach` along both sides. dark(du, dv): what is taken; it changes over a length `scale`.
+    // `reach` along both sides. dark(du, dv): what is taken; it changes over a length `scale`. To
+    // be part of whoever calls it, for his instruction set.
     template <class Dark>
-    void splat(float u, float v, float reach_u, float reach_v, float scale, Dark dark) {
+    CAROM_INLINE void splat(float u, float v, float reach_u, float reach_v, float scale,
+                            Dark dark) {
         Level& level = level_for(scale);
         const int n = level.n;
         const float step_u = side_u_ / float(n), step_v = side_v_ / float(n);
@@ -28,33 +44,24 @@ public:
             span(double(u - reach_u) / step_u - 0.5, double(u + reach_u) / step_u - 0.5, n);
         const Span rows =
             span(double(v - reach_v) / step_v - 0.5, double(v + reach_v) / step_v - 0.5, n);
+        // Whole vectors: beyond its reach a thing must take nothing.
+        const int first = columns.first / kLanes * kLanes;
+        const int count = (columns.last - first + kLanes) / kLanes * kLanes;
         for (int j = rows.first; j <= rows.last; ++j) {
-            float* const light = &level.light[size_t(j) * n];
+            float* const light = &level.light[size_t(j) * n + first];
             const float dv = (float(j) + 0.5f) * step_v - v;
-            for (int i = columns.first; i <= columns.last; ++i)
-                light[i] *= 1 - dark((float(i) + 0.5f) * step_u - u, dv);
+            const float du = (float(first) + 0.5f) * step_u - u;
+            for (int k = 0; k < count; ++k) light[k] *= 1 - dark(du + float(k) * step_u, dv);
         }
     }
 
     // Puts all sizes together; the finest has everything then.
     void merge();
-    std::vector<float>& finest() { return levels_.back().light; }
-
-    // Light at a place, 0 to 1 along both sides; after `merge`.
-    float at(float u, float v) const {
-        const Level& level = levels_.back();
-        const float most = float(level.n - 1);
-        const float x = clamp(u * float(level.n) - 0.5f, 0, most);
-        const float y = clamp(v * float(level.n) - 0.5f, 0, most);
-        const int i = std::min(int(x), level.n - 2), j = std::min(int(y), level.n - 2);
-        const float right = x - float(i), far = y - float(j);
-        const float* const row = &level.light[size_t(j) * level.n + i];
-        const float* const next = row + level.n;
-        const float near_side = row[0] + (row[1] - row[0]) * right;
-        return near_side + (next[0] + (next[1] - next[0]) * right - near_side) * far;
-    }
+    const std::vector<float>& finest() const { return levels_.back().light; }
+    int places() const { return levels_.back().n; }  // along a side of the finest
 
 private:
+    static constexpr int kLanes = 8;  // places to a step of the loop
     struct Level {
         int n;
         bool used;

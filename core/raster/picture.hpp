@@ -17,6 +17,12 @@
 #define CAROM_WIDE
 #endif
 
+#if defined(__GNUC__)
+#define CAROM_INLINE [[gnu::always_inline]] inline
+#else
+#define CAROM_INLINE inline
+#endif
+
 namespace carom::raster {
 
 struct F3 {
@@ -108,25 +114,6 @@ struct Ball {
     F3 color;
 };
 
-// Three numbers per pixel, from 0 to 1, row by row.
-struct Frame {
-    int width = 0, height = 0;
-    std::vector<float> rgb;
-
-    void resize(int w, int h) {
-        width = w, height = h;
-        rgb.resize(size_t(3) * w * h);
-    }
-    float* row(int j) { return &rgb[size_t(3) * width * j]; }
-    const float* row(int j) const { return &rgb[size_t(3) * width * j]; }
-};
-
-inline void blend(float* pixel, F3 color, float alpha) {
-    pixel[0] += (color.x - pixel[0]) * alpha;
-    pixel[1] += (color.y - pixel[1]) * alpha;
-    pixel[2] += (color.z - pixel[2]) * alpha;
-}
-
 // First and last pixel that something covers; empty if first > last.
 struct Span {
     int first = 0, last = -1;
@@ -135,6 +122,30 @@ inline Span span(double from, double to, int size) {
     if (!(from < size) || !(to >= 0)) return {};
     return {from > 0 ? int(from) : 0, to < size - 1 ? int(to) + 1 : size - 1};
 }
+inline Span common(Span a, Span b) {
+    return {a.first > b.first ? a.first : b.first, a.last < b.last ? a.last : b.last};
+}
+
+// Some rows of a picture: three numbers per pixel, from 0 to 1.
+struct Frame {
+    int width = 0;
+    Span rows;
+    std::vector<float> rgb;
+
+    void resize(int w, Span which) {
+        width = w, rows = which;
+        rgb.resize(size_t(3) * w * (which.last - which.first + 1));
+    }
+    float* row(int j) { return &rgb[size_t(3) * width * (j - rows.first)]; }
+    const float* row(int j) const { return &rgb[size_t(3) * width * (j - rows.first)]; }
+};
+
+inline void blend(float* pixel, F3 color, float alpha) {
+    pixel[0] += (color.x - pixel[0]) * alpha;
+    pixel[1] += (color.y - pixel[1]) * alpha;
+    pixel[2] += (color.z - pixel[2]) * alpha;
+}
+
 struct Bounds {
     Span x, y;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "crowd.hpp"
@@ -26,7 +27,11 @@ public:
 
 private:
     void place(const std::vector<Vec3>& position, const std::vector<double>& radius,
-               const std::vector<uint32_t>& color, size_t own);
+               const std::vector<uint32_t>& color);
+    void sort_into_bands();
+    void paint(int band, const std::vector<Vec3>& position, const std::vector<double>& radius);
+    void shade(int k, const Vec3& x, double radius);
+    void uncover();
 
     View view_;
     Look look_;
@@ -37,8 +42,13 @@ private:
     Casters casters_;
     std::vector<std::pair<float, int>> order_;  // spheres by distance
     std::vector<Ball> balls_;                   // from near to far
-    Frame still_;                               // what lies behind all spheres
-    Frame frame_;
+    int band_ = 1;                              // rows of pixels that are drawn at once
+    std::vector<int> starts_, inside_;          // spheres by band
+    std::vector<int> visible_;                  // those of a band that are seen
+    std::vector<uint8_t> shaded_;               // have crowd and casters been asked?
+    std::optional<Crowd> crowd_;
+    Frame still_;  // what lies behind all spheres
+    Frame frame_;  // a band of the picture
     std::mutex busy_;
 };
 

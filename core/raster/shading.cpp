@@ -5,146 +5,158 @@
 namespace carom::raster {
 
 namespace {
-constexpr int kBatch = 64;
-}
 
-// Places on spheres that are lit together, as arrays, so that the compiler makes vectors of them.
-struct Shading::Batch {
-    int count = 0;
-    int pixel[kBatch] = {}, ball[kBatch] = {};
-    float weight[kBatch] = {};             // share of the pixel
-    float x[kBatch] = {}, y[kBatch] = {};  // the ray is (x, y, 1)
-    float cx[kBatch], cy[kBatch], cz[kBatch], r[kBatch];
-    float px[kBatch], py[kBatch], pz[kBatch];        // the place
-    float nx[kBatch], ny[kBatch], nz[kBatch];        // the normal
-    float seen[kBatch], left[kBatch];                // of the lamp; of all light, in the crowd
-    float red[kBatch], green[kBatch], blue[kBatch];  // first the skin, then the light
+constexpr int kBatch = 64, kLanes = 8;
 
-    void add(int at, int who, float share, float ray_x, float ray_y) {
-        pixel[count] = at, ball[count] = who, weight[count] = share;
-        x[count] = ray_x, y[count] = ray_y;
-        ++count;
+// The samples of a pixel, as bits, that see a sphere: their share, and where their middle lies, in
+// quarters of a pixel to the right and up.
+struct Part {
+    float weight = 0, aside = 0, above = 0;
+};
+struct Parts {
+    Part of[16];
+    explicit Parts(int samples) {
+        if (samples == 1) {
+            of[1].weight = 1;
+            return;
+        }
+        for (int bits = 1; bits < 16; ++bits) {
+            int many = 0, aside = 0, above = 0;
+            for (int k = 0; k < 4; ++k) {
+                if (!(bits >> k & 1)) continue;
+                ++many;
+                aside += k & 1 ? 1 : -1;
+                above += k & 2 ? -1 : 1;
+            }
+            of[bits] = {0.25f * float(many), float(aside) / float(many),
+                        float(above) / float(many)};
+        }
     }
 };
 
-Shading::Shading(const View& view, const Look& look)
-    : view_(view), look_(look), lamp_(view.direction(look.lamp)), up_(view.direction(look.up)) {}
+// Which samples of the pixels of a row see a sphere; whether any does.
+CAROM_WIDE bool find(const Visibility& seen, int samples, int ball, int row, int first, int n,
+                     uint8_t* __restrict bits) {
+    if (samples == 1) {
+        const int* const id = seen.ids(row) + first;
+        int any = 0;
+        for (int k = 0; k < n; ++k) any |= bits[k] = id[k] == ball;
+        return any;
+    }
+    const int* const upper = seen.ids(2 * row) + 2 * first;
+    const int* const lower = seen.ids(2 * row + 1) + 2 * first;
+    int any = 0;
+    for (int k = 0; k < n; ++k)
+        any |= bits[k] = uint8_t((upper[2 * k] == ball) + 2 * (upper[2 * k + 1] == ball) +
+                                 4 * (lower[2 * k] == ball) + 8 * (lower[2 * k + 1] == ball));
+    return any;
+}
 
-void Shading::paint(const Visibility& seen, const std::vector<Ball>& balls, const Casters& casters,
-                    Frame& frame) const {
-    for (int row = 0; row < frame.height; ++row) collect(seen, row, balls, casters, frame);
+}  // namespace
+
+// Places on a sphere that are lit together, as arrays, so that the compiler makes vectors of them.
+struct Shading::Batch {
+    int count = 0;
+    float* pixel[kBatch] = {};
+    float weight[kBatch] = {};                 // share of the pixel
+    float x[kBatch] = {}, y[kBatch] = {};      // the ray is (x, y, 1)
+    float px[kBatch], py[kBatch], pz[kBatch];  // the place
+    float nx[kBatch], ny[kBatch], nz[kBatch];  // the normal
+    float seen[kBatch], left[kBatch];          // of the lamp; of all light, in the crowd
+    float red[kBatch], green[kBatch], blue[kBatch];
+};
+
+Shading::Shading(const View& view, const Look& look)
+    : view_(view), look_(look), lamp_(view.direction(look.lamp)), up_(view.direction(look.up)) {
+    for (int i = 0; i < view.width; ++i) rays_.push_back(view.ray_x(float(i)));
 }
 
 // Where all samples of a pixel see the same sphere, it is lit once, in the middle; elsewhere each
 // sphere is lit in the middle of its samples.
-void Shading::collect(const Visibility& seen, int row, const std::vector<Ball>& balls,
-                      const Casters& casters, Frame& frame) const {
-    Batch batch;
-    float* const pixels = frame.row(row);
-    const auto flush = [&] {
-        if (batch.count > 0) light(batch, balls, casters, pixels);
-        batch.count = 0;
-    };
-    const float y = view_.ray_y(float(row));
-    if (view_.samples == 1) {
-        const int* ids = seen.ids(row);
-        for (int i = 0; i < view_.width; ++i) {
-            if (ids[i] == Visibility::kNone) continue;
-            std::fill_n(pixels + 3 * i, 3, 0.0f);
-            batch.add(i, ids[i], 1, view_.ray_x(float(i)), y);
-            if (batch.count == kBatch) flush();
-        }
-        return flush();
-    }
-    const int* rows[2] = {seen.ids(2 * row), seen.ids(2 * row + 1)};
+void Shading::paint(const Visibility& seen, const std::vector<int>& visible,
+                    const std::vector<Ball>& balls, const Casters& casters, Frame& frame) const {
+    const int samples = view_.samples;
+    const Parts parts(samples);
     const float quarter = 0.25f * float(view_.pixel);
-    for (int i = 0; i < view_.width; ++i) {
-        const int ids[4] = {rows[0][2 * i], rows[0][2 * i + 1], rows[1][2 * i], rows[1][2 * i + 1]};
-        const float x = view_.ray_x(float(i));
-        int covered = 0;
-        for (int k = 0; k < 4; ++k) {
-            if (ids[k] == Visibility::kNone) continue;
-            ++covered;
-            int first = 0, same = 0;
-            float aside = 0, above = 0;
-            while (ids[first] != ids[k]) ++first;
-            if (first < k) continue;
-            for (int m = k; m < 4; ++m) {
-                if (ids[m] != ids[k]) continue;
-                ++same;
-                aside += m & 1 ? quarter : -quarter;
-                above += m & 2 ? -quarter : quarter;
+    std::vector<uint8_t> bits(view_.width);
+    Batch batch;
+    for (const int ball : visible) {
+        const Bounds bounds = seen.bounds(balls[ball].center, balls[ball].radius);
+        const int first = bounds.x.first / samples, n = bounds.x.last / samples - first + 1;
+        const Span rows = common({bounds.y.first / samples, bounds.y.last / samples}, frame.rows);
+        for (int row = rows.first; row <= rows.last; ++row) {
+            if (!find(seen, samples, ball, row, first, n, bits.data())) continue;
+            const float y = view_.ray_y(float(row));
+            float* const pixels = frame.row(row) + 3 * first;
+            int at = batch.count;
+            for (int k = 0; k < n; ++k) {
+                // Without a choice: what is not seen is written over.
+                const Part& part = parts.of[bits[k]];
+                batch.pixel[at] = pixels + 3 * k;
+                batch.weight[at] = part.weight;
+                batch.x[at] = rays_[first + k] + part.aside * quarter;
+                batch.y[at] = y + part.above * quarter;
+                at += bits[k] != 0;
+                if (at < kBatch) continue;
+                batch.count = at;
+                light(batch, balls, ball, casters);
+                at = 0;
             }
-            batch.add(i, ids[k], 0.25f * float(same), x + aside / float(same),
-                      y + above / float(same));
+            batch.count = at;
         }
-        for (int c = 0; c < 3; ++c) pixels[3 * i + c] *= 1 - 0.25f * float(covered);
-        if (batch.count > kBatch - 4) flush();
+        if (batch.count > 0) light(batch, balls, ball, casters);
     }
-    flush();
 }
 
 // Light creeps round the edge, where the sphere's own shadow would be hard; so places turned away
 // from the lamp ask nobody.
-CAROM_WIDE void Shading::shadow(Batch& b, const std::vector<Ball>& balls,
+CAROM_WIDE void Shading::shadow(Batch& b, const std::vector<Ball>& balls, int ball,
                                 const Casters& casters) const {
-    for (int first = 0, end; first < b.count; first = end) {
-        const int who = b.ball[first];
-        for (end = first + 1; end < b.count && b.ball[end] == who;) ++end;
-        for (const int* j = casters.begin(who); j != casters.end(who); ++j) {
-            const F3 c = balls[*j].center;
-            const float r = balls[*j].radius;
-            for (int k = first; k < end; ++k) {
-                const float more = 0.12f * b.r[k];
-                const float dx = c.x - b.px[k] - more * lamp_.x;
-                const float dy = c.y - b.py[k] - more * lamp_.y;
-                const float dz = c.z - b.pz[k] - more * lamp_.z;
-                const float gap = dx * lamp_.x + dy * lamp_.y + dz * lamp_.z;
-                const float s2 = dx * dx + dy * dy + dz * dz - gap * gap;
-                const float dark = hidden(std::sqrt(positive(s2)), r, half_shadow(look_, gap));
-                b.seen[k] *= gap > 0 ? 1 - dark : 1;
-            }
+    const float more = 0.12f * balls[ball].radius;
+    const int n = b.count;
+    for (const int* j = casters.begin(ball); j != casters.end(ball); ++j) {
+        const F3 c = balls[*j].center - lamp_ * more;
+        const float r = balls[*j].radius;
+        for (int k = 0; k < n; ++k) {
+            const float dx = c.x - b.px[k], dy = c.y - b.py[k], dz = c.z - b.pz[k];
+            const float gap = dx * lamp_.x + dy * lamp_.y + dz * lamp_.z;
+            const float s2 = dx * dx + dy * dy + dz * dz - gap * gap;
+            const float dark = hidden(std::sqrt(positive(s2)), r, half_shadow(look_, gap));
+            b.seen[k] *= gap > 0 ? 1 - dark : 1;
         }
     }
 }
 
-CAROM_WIDE void Shading::light(Batch& b, const std::vector<Ball>& balls, const Casters& casters,
-                               float* row) const {
-    // The loops below always run over the whole batch, which compilers do best.
-    for (int k = b.count; k < kBatch; ++k) {
-        b.ball[k] = b.ball[0], b.x[k] = b.x[0], b.y[k] = b.y[0];
-    }
-    float slope_x[kBatch], slope_y[kBatch], slope_z[kBatch];
-    for (int k = 0; k < kBatch; ++k) {
-        const Ball& ball = balls[b.ball[k]];
-        b.cx[k] = ball.center.x, b.cy[k] = ball.center.y, b.cz[k] = ball.center.z;
-        b.r[k] = ball.radius;
-        b.red[k] = ball.skin.x, b.green[k] = ball.skin.y, b.blue[k] = ball.skin.z;
-        b.left[k] = ball.left;
-        slope_x[k] = ball.left_slope.x, slope_y[k] = ball.left_slope.y;
-        slope_z[k] = ball.left_slope.z;
-        b.seen[k] = casters.any() ? casters.left(b.ball[k]) : 1;
-    }
-    for (int k = 0; k < kBatch; ++k) {
+CAROM_WIDE void Shading::light(Batch& b, const std::vector<Ball>& balls, int who,
+                               const Casters& casters) const {
+    const Ball& ball = balls[who];
+    const F3 c = ball.center, slope = ball.left_slope;
+    const float r2 = ball.radius * ball.radius;
+    const float left_of_lamp = casters.any() ? casters.left(who) : 1;
+    const int used = b.count;
+    // Whole vectors: what lies behind the last place is not looked at.
+    const int n = b.count = (used + kLanes - 1) / kLanes * kLanes;
+    for (int k = used; k < n; ++k) b.x[k] = b.x[0], b.y[k] = b.y[0];
+    for (int k = 0; k < n; ++k) {
         const float x = b.x[k], y = b.y[k];
-        const float ex = y * b.cz[k] - b.cy[k], ey = b.cx[k] - x * b.cz[k];
-        const float ez = x * b.cy[k] - y * b.cx[k];
+        const float ex = y * c.z - c.y, ey = c.x - x * c.z, ez = x * c.y - y * c.x;
         const float d2 = 1 + x * x + y * y;
-        const float square = d2 * b.r[k] * b.r[k] - (ex * ex + ey * ey + ez * ez);
+        const float square = d2 * r2 - (ex * ex + ey * ey + ez * ez);
         const float half = std::sqrt(positive(square));
-        const float t = (x * b.cx[k] + y * b.cy[k] + b.cz[k] - half) / d2;
+        const float t = (x * c.x + y * c.y + c.z - half) / d2;
         b.px[k] = t * x, b.py[k] = t * y, b.pz[k] = t;
-        const float dx = b.px[k] - b.cx[k], dy = b.py[k] - b.cy[k], dz = t - b.cz[k];
+        const float dx = b.px[k] - c.x, dy = b.py[k] - c.y, dz = t - c.z;
         const float per = 1 / std::sqrt(dx * dx + dy * dy + dz * dz);
         b.nx[k] = dx * per, b.ny[k] = dy * per, b.nz[k] = dz * per;
-        b.left[k] =
-            clamp(b.left[k] + slope_x[k] * b.nx[k] + slope_y[k] * b.ny[k] + slope_z[k] * b.nz[k]);
+        b.left[k] = clamp(ball.left + slope.x * b.nx[k] + slope.y * b.ny[k] + slope.z * b.nz[k]);
+        b.seen[k] = left_of_lamp;
     }
-    if (casters.any()) shadow(b, balls, casters);
+    if (casters.any()) shadow(b, balls, who, casters);
     const F3 key = look_.key, sky = look_.sky, ground = look_.ground, fog = look_.back;
-    for (int k = 0; k < kBatch; ++k) {
+    const F3 skin = ball.skin;
+    for (int k = 0; k < n; ++k) {
         const float x = b.x[k], y = b.y[k];
-        const float away = 1 / std::sqrt(1 + x * x + y * y);
+        const float ray = std::sqrt(1 + x * x + y * y), away = 1 / ray;
         const float nx = b.nx[k], ny = b.ny[k], nz = b.nz[k], left = b.left[k];
         const float facing = nx * lamp_.x + ny * lamp_.y + nz * lamp_.z;
         const float turned = clamp((facing + 0.05f) * 4),
@@ -163,25 +175,31 @@ CAROM_WIDE void Shading::light(Batch& b, const std::vector<Ball>& balls, const C
         const float to_eye = -(nx * x + ny * y + nz) * away;
         const float edge = 1 - (to_eye > 0 ? to_eye : 0);
         const float rim = edge * edge * edge * high * seen * left;
-        const float distance = b.pz[k] / away;
+        const float distance = b.pz[k] * ray;
         const float mist =
             look_.fog_most * clamp((distance - look_.fog_from) * look_.fog_per_length);
-        const auto lit = [&](float skin, float k_, float s_, float g_, float f_) {
-            float light = skin * ((g_ + (s_ - g_) * high) * around + lamp * k_);
-            light += shine * k_ + s_ * rim * (0.10f + 0.25f * skin);
-            const float shown = std::sqrt(light / (1 + 0.12f * light));
+        const auto lit = [&](float own, float k_, float s_, float g_, float f_) {
+            float glow = own * ((g_ + (s_ - g_) * high) * around + lamp * k_);
+            glow += shine * k_ + s_ * rim * (0.10f + 0.25f * own);
+            const float shown = std::sqrt(glow / (1 + 0.12f * glow));
             return shown + (f_ - shown) * mist;
         };
-        b.red[k] = lit(b.red[k], key.x, sky.x, ground.x, fog.x);
-        b.green[k] = lit(b.green[k], key.y, sky.y, ground.y, fog.y);
-        b.blue[k] = lit(b.blue[k], key.z, sky.z, ground.z, fog.z);
+        b.red[k] = lit(skin.x, key.x, sky.x, ground.x, fog.x);
+        b.green[k] = lit(skin.y, key.y, sky.y, ground.y, fog.y);
+        b.blue[k] = lit(skin.z, key.z, sky.z, ground.z, fog.z);
     }
-    for (int k = 0; k < b.count; ++k) {
-        float* const pixel = row + 3 * b.pixel[k];
-        pixel[0] += b.weight[k] * b.red[k];
-        pixel[1] += b.weight[k] * b.green[k];
-        pixel[2] += b.weight[k] * b.blue[k];
+    for (int k = 0; k < used; ++k) {
+        float* const pixel = b.pixel[k];
+        const float weight = b.weight[k];
+        if (weight == 1) {
+            pixel[0] = b.red[k], pixel[1] = b.green[k], pixel[2] = b.blue[k];
+            continue;
+        }
+        pixel[0] += weight * b.red[k];
+        pixel[1] += weight * b.green[k];
+        pixel[2] += weight * b.blue[k];
     }
+    b.count = 0;
 }
 
 }  // namespace carom::raster

@@ -10,21 +10,21 @@ class Shading {
 public:
     Shading(const View& view, const Look& look);
 
-    // Paints what is seen of the spheres over what is in the frame.
-    void paint(const Visibility& seen, const std::vector<Ball>& balls, const Casters& casters,
-               Frame& frame) const;
+    // Paints what is seen of the spheres over what is in the frame. visible: those that are seen.
+    void paint(const Visibility& seen, const std::vector<int>& visible,
+               const std::vector<Ball>& balls, const Casters& casters, Frame& frame) const;
 
 private:
     struct Batch;
-    void collect(const Visibility& seen, int row, const std::vector<Ball>& balls,
-                 const Casters& casters, Frame& frame) const;
-    void light(Batch& batch, const std::vector<Ball>& balls, const Casters& casters,
-               float* row) const;
-    void shadow(Batch& batch, const std::vector<Ball>& balls, const Casters& casters) const;
+    void light(Batch& batch, const std::vector<Ball>& balls, int ball,
+               const Casters& casters) const;
+    void shadow(Batch& batch, const std::vector<Ball>& balls, int ball,
+                const Casters& casters) const;
 
     View view_;
     Look look_;
     F3 lamp_, up_;
+    std::vector<float> rays_;  // view.ray_x of each column
 };
 
 }  // namespace carom::raster

@@ -2,6 +2,7 @@
 // found once per sphere, and each place on it then asks those few.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "picture.hpp"
@@ -25,34 +26,59 @@ inline float hidden(float s, float r, float wide) {
     return most * (1 - share * share * (3 - 2 * share));
 }
 
+// The same for many places behind one thing.
+struct HalfShadow {
+    float inner, per, most;
+    HalfShadow(float r, float wide)
+        : inner(std::abs(r - wide)),
+          per(1 / (r + wide - inner)),
+          most(r < wide ? r * r / (wide * wide) : 1.0f) {}
+    float dark(float s) const {
+        const float share = clamp((s - inner) * per);
+        return most * (1 - share * share * (3 - 2 * share));
+    }
+};
+
 class Casters {
 public:
-    // lamp: unit vector towards it. Asks only for balls that are seen.
-    void find(const std::vector<Ball>& balls, const std::vector<uint8_t>& seen, const Look& look,
-              F3 lamp);
-    void clear() { first_.clear(); }
+    // lamp: unit vector towards it. Both know only balls about which `ask` has asked.
+    void begin(const std::vector<Ball>& balls, const Look& look, F3 lamp);
+    void ask(int ball, const std::vector<Ball>& balls, const Look& look);
+    void clear() { begin_.clear(); }
 
-    bool any() const { return !first_.empty(); }
-    // Those whose shadows change within the ball.
-    const int* begin(int ball) const { return &all_[0] + first_[ball]; }
-    const int* end(int ball) const { return &all_[0] + first_[ball + 1]; }
+    bool any() const { return !begin_.empty(); }
+    // Those whose shadows change within a visible ball.
+    const int* begin(int ball) const { return &all_[0] + begin_[ball]; }
+    const int* end(int ball) const { return &all_[0] + end_[ball]; }
     // What the others leave of the lamp, for the whole ball.
     float left(int ball) const { return left_[ball]; }
 
 private:
-    void sort_into_cells(const std::vector<Ball>& balls, const Look& look);
-    float ask(int i, const std::vector<Ball>& balls, const Look& look);
-
     struct Place {
         float a, b, height;  // across the light, and towards the lamp
     };
+    struct Cells {
+        int low, high;
+    };
+    Cells touched(float at, float reach, int axis) const;
+    void sort_into_cells(const std::vector<Ball>& balls, const Look& look);
+    float dimmed(int first, int last, const Place& p, const Look& look) const;
+    int reaching(int first, int last, const Place& p, float radius, const Look& look);
+
+    static constexpr int kLanes = 8;  // entries to a step of the loop
+
     std::vector<Place> places_;
-    std::vector<int> order_;  // from the lamp on
+    std::vector<std::pair<float, int>> order_;  // heights, upside down: from the lamp on
     float low_[2] = {}, per_[2] = {};
-    int cells_ = 1;                     // along each axis
-    std::vector<int> starts_, inside_;  // spheres by cell, from the lamp on
-    std::vector<int> asked_;            // by whom last
-    std::vector<int> first_, all_;
+    int cells_ = 1;            // along each axis
+    std::vector<int> starts_;  // of the cells' entries
+    // Spheres by cell, from the lamp on.
+    std::vector<int> inside_;
+    std::vector<float> a_, b_, height_, radius_;
+    std::vector<uint8_t> counts_;  // those of a cell whose shadows reach a ball: which, and who
+    std::vector<int> reaching_;
+    std::vector<int> asked_;  // by whom last
+    std::vector<int> begin_, end_, all_;
     std::vector<float> left_;
 };
 

@@ -34,17 +34,18 @@ Bounds around(const View& view, F3 c, float radius, float more) {
 
 void Visibility::resize(const View& view) {
     view_ = view;
+    samples_ = view.samples;
     view_.width *= view.samples;
     view_.height *= view.samples;
     view_.pixel /= view.samples;
     stride_ = (view_.width + kLanes - 1) / kLanes * kLanes;
-    depths_.resize(size_t(stride_) * view_.height);
-    ids_.resize(depths_.size());
 }
 
-void Visibility::clear() {
-    std::fill(depths_.begin(), depths_.end(), kFar);
-    std::fill(ids_.begin(), ids_.end(), kNone);
+void Visibility::begin(Span rows) {
+    rows_ = {samples_ * rows.first, samples_ * rows.last + samples_ - 1};
+    const size_t all = size_t(stride_) * (rows_.last - rows_.first + 1);
+    depths_.assign(all, kFar);
+    ids_.assign(all, kNone);
 }
 
 // Whether all samples around something see what is nearer. distance: that of its nearest point.
@@ -64,20 +65,31 @@ CAROM_WIDE bool Visibility::is_hidden(const Bounds& bounds, float distance) cons
     return true;
 }
 
+// At least a sample large, or small spheres would come and go.
+float Visibility::drawn_radius(F3 c, float radius) const {
+    return std::max(radius, 0.6f * float(view_.pixel) * c.z);
+}
+
+Bounds Visibility::bounds(F3 c, float radius) const {
+    return around(view_, c, drawn_radius(c, radius), 0);
+}
+
 // With the ray d = (x, y, 1) and its difference e to the ray through the centre c, the ray meets
 // the sphere where t d² = d·c - sqrt(d² r² - |e × c|²). That root has no small difference of
 // large numbers in it, so single precision will do. All is divided by c.z.
-CAROM_WIDE void Visibility::add(int index, F3 c, float radius) {
-    if (c.z <= 0.02f * radius || dot(c, c) <= 1.02f * radius * radius) return;
+CAROM_WIDE bool Visibility::add(int index, F3 c, float radius) {
+    if (c.z <= 0.02f * radius || dot(c, c) <= 1.02f * radius * radius) return false;
     const float pixel = float(view_.pixel);
-    // At least a sample large, or small spheres would come and go.
-    const float r = std::max(radius / c.z, 0.6f * pixel), r2 = r * r;
+    const float r = drawn_radius(c, radius) / c.z, r2 = r * r;
     const float x0 = c.x / c.z, y0 = c.y / c.z;
-    const Bounds bounds = around(view_, c, r * c.z, 0);
-    if (is_hidden(bounds, std::sqrt(dot(c, c)) - r * c.z)) return;
+    Bounds bounds = around(view_, c, r * c.z, 0);
+    bounds.y = common(bounds.y, rows_);
+    if (is_hidden(bounds, std::sqrt(dot(c, c)) - r * c.z)) return false;
     const bool bounded = r < 0.95f;  // else its outline need not be an ellipse
     const float middle = 0.5f * float(view_.width) - 0.5f;
     const float p2 = r2 - 1 - y0 * y0;
+    const float per_root = -1 / (p2 * pixel), at_x0 = x0 / pixel + middle;
+    int any = 0;
     for (int row = bounds.y.first; row <= bounds.y.last; ++row) {
         const float y = view_.ray_y(float(row)), dy = y - y0;
         const float p1 = r2 * x0 + x0 * y0 * dy;
@@ -86,14 +98,13 @@ CAROM_WIDE void Visibility::add(int index, F3 c, float radius) {
         if (bounded) {
             const float inside = p1 * p1 - p2 * p0;
             if (inside < 0) continue;
-            const float root = std::sqrt(inside);
-            s = span(((p1 - root) / -p2 + x0) / pixel + middle,
-                     ((p1 + root) / -p2 + x0) / pixel + middle, view_.width);
+            const float at = p1 * per_root + at_x0, half = std::sqrt(inside) * per_root;
+            s = span(at - half, at + half, view_.width);
         }
         const int first = s.first / kLanes * kLanes;
         const int count = (s.last - first + kLanes) / kLanes * kLanes;
-        float* __restrict const depth = &depths_[size_t(row) * stride_ + first];
-        int* __restrict const id = &ids_[size_t(row) * stride_ + first];
+        float* __restrict const depth = &depths_[size_t(row - rows_.first) * stride_ + first];
+        int* __restrict const id = &ids_[size_t(row - rows_.first) * stride_ + first];
         const float ahead = 1 + x0 * x0 + y * y0, begin = (float(first) - middle) * pixel - x0;
         for (int k = 0; k < count; ++k) {
             const float dx = begin + float(k) * pixel;
@@ -103,7 +114,25 @@ CAROM_WIDE void Visibility::add(int index, F3 c, float radius) {
             const int hit = -(int(square >= 0) & int(t > 0) & int(t < depth[k]));
             id[k] = (index & hit) | (id[k] & ~hit);
             depth[k] = hit ? t : depth[k];
+            any |= hit;
         }
+    }
+    return any;
+}
+
+CAROM_WIDE void Visibility::open(int row, uint8_t* __restrict open,
+                                 uint8_t* __restrict whole) const {
+    const int n = view_.width / samples_;
+    if (samples_ == 1) {
+        const int* const id = ids(row);
+        for (int i = 0; i < n; ++i) open[i] = id[i] == kNone, whole[i] = 1;
+        return;
+    }
+    const int *const upper = ids(2 * row), *const lower = ids(2 * row + 1);
+    for (int i = 0; i < n; ++i) {
+        const int a = upper[2 * i], b = upper[2 * i + 1], c = lower[2 * i], d = lower[2 * i + 1];
+        open[i] = uint8_t((a == kNone) + (b == kNone) + (c == kNone) + (d == kNone));
+        whole[i] = uint8_t(int(a == b) & int(a == c) & int(a == d));
     }
 }
 

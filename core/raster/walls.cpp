@@ -72,7 +72,8 @@ inline Wall::Point Wall::at(float x, float y) const {
     return p;
 }
 
-void Wall::paint(Frame& frame) const {
+void Wall::paint(Frame& frame) {
+    columns_.assign(frame.rows.last + 1, {});
     const auto line = [](double begin, double steps, float at, float slope) {
         const float step = float(std::abs(steps)) * slope;
         const float place = float(begin) + float(steps) * at;
@@ -84,6 +85,8 @@ void Wall::paint(Frame& frame) const {
         for (int i = bounds_.x.first; i <= bounds_.x.last; ++i) {
             const Point p = at(view_.ray_x(float(i)), view_.ray_y(float(j)));
             if (!(p.cover * p.rim > 0)) continue;
+            if (columns_[j].first > columns_[j].last) columns_[j].first = i;
+            columns_[j].last = i;
             const float grid = float(face_.grid_line) *
                                std::max(line(face_.grid_u[0], face_.grid_u[1], p.u, p.slope_u),
                                         line(face_.grid_v[0], face_.grid_v[1], p.v, p.slope_v));
@@ -102,23 +105,24 @@ void Wall::paint(Frame& frame) const {
 
 // With the line to the lamp l, places that a ball's shadow reaches are those at a distance s from
 // that line through the ball: s² = d² - (d·l)², an ellipse on the wall.
-void Wall::shadow(const Ball& ball, F3 lamp) {
+CAROM_WIDE void Wall::shadow(const Ball& ball, F3 lamp) {
     const float slant = dot(lamp, normal_);
     const float gap = (dot(normal_, ball.center) - level_) / slant;
     const float r = ball.radius, wide = half_shadow(look_, gap), reach = r + wide;
     if (gap <= 0 || r * r < kFaintest * wide * wide) return;
     const F3 foot = ball.center - lamp * gap - corner_;
     const float lu = dot(lamp, u_), lv = dot(lamp, v_), per = 1 / (slant * slant);
+    const HalfShadow half(r, wide);
     shadows_.splat(dot(foot, u_), dot(foot, v_), reach * std::sqrt(1 + lu * lu * per),
                    reach * std::sqrt(1 + lv * lv * per), wide, [=](float du, float dv) {
                        const float along = du * lu + dv * lv;
                        const float s2 = du * du + dv * dv - along * along;
-                       return hidden(std::sqrt(positive(s2)), r, wide);
+                       return half.dark(std::sqrt(positive(s2)));
                    });
 }
 
 // How much of the sky a ball hides from a place on a wall: r² h/(ρ² + h²)^(3/2).
-void Wall::spot(const Ball& ball) {
+CAROM_WIDE void Wall::spot(const Ball& ball) {
     const float height = dot(normal_, ball.center) - level_, r = ball.radius;
     if (height < 0 || height > kNearWall * r) return;
     const float high = std::max(height / r, 1.0f), reach = (0.8f + high) * r;
@@ -131,10 +135,11 @@ void Wall::spot(const Ball& ball) {
     });
 }
 
-void Wall::darken(const std::vector<Ball>& balls, const Visibility& seen, Frame& frame) {
+void Wall::light(const std::vector<Ball>& balls) {
     const F3 lamp = view_.direction(look_.lamp);
     const bool shadows = look_.shadows && face_.shade > 0 && dot(lamp, normal_) > 0.05f;
-    if (!shadows && face_.contact <= 0) return;
+    dark_ = shadows || face_.contact > 0;
+    if (!dark_) return;
     shadows_.clear();
     spots_.clear();
     for (const Ball& ball : balls) {
@@ -144,24 +149,44 @@ void Wall::darken(const std::vector<Ball>& balls, const Visibility& seen, Frame&
     shadows_.merge();
     spots_.merge();
     const float shade = float(face_.shade) * look_.shadowed;
-    std::vector<float>& light = spots_.finest();
+    // In few bytes, because the maps of all walls should stay in the cache.
+    const std::vector<float>& spots = spots_.finest();
     const std::vector<float>& lamp_light = shadows_.finest();
-    for (size_t k = 0; k < light.size(); ++k) light[k] *= 1 - shade * (1 - lamp_light[k]);
+    light_.resize(spots.size());
+    for (size_t k = 0; k < spots.size(); ++k)
+        light_[k] = uint16_t(65535 * spots[k] * (1 - shade * (1 - lamp_light[k])) + 0.5f);
+}
+
+void Wall::darken(const Visibility& seen, Frame& frame) const {
+    if (!dark_) return;
     const int samples = view_.samples;
-    for (int j = bounds_.y.first; j <= bounds_.y.last; ++j) {
-        float* const pixels = frame.row(j);
-        const float y = view_.ray_y(float(j));
-        for (int i = bounds_.x.first; i <= bounds_.x.last; ++i) {
-            if (seen.covered(i, j, samples)) continue;
-            const float x = view_.ray_x(float(i));
-            const float per = 1 / (normal_.x * x + normal_.y * y + normal_.z);
-            const float u = (along_u_.x * x + along_u_.y * y + along_u_.z) * per;
-            const float v = (along_v_.x * x + along_v_.y * y + along_v_.z) * per;
-            if (!(u >= 0 && u <= 1 && v >= 0 && v <= 1 && level_ * per > 0)) continue;
-            float factor = spots_.at(u, v);
-            if (face_.fade > 0) factor = 1 - rim(u, v) * (1 - factor);
-            for (int c = 0; c < 3; ++c) pixels[3 * i + c] *= factor;
+    const Span rows = common(bounds_.y, frame.rows);
+    std::vector<int> open(view_.width + 1);
+    std::vector<float> factor(view_.width);
+    for (int j = rows.first; j <= rows.last; ++j) {
+        int n = 0;
+        for (int i = columns_[j].first; i <= columns_[j].last; ++i) {
+            open[n] = i;
+            n += !seen.covered(i, j, samples);
         }
+        left(open.data(), n, view_.ray_y(float(j)), factor.data());
+        float* const pixels = frame.row(j);
+        for (int k = 0; k < n; ++k)
+            for (int c = 0; c < 3; ++c) pixels[3 * open[k] + c] *= factor[k];
+    }
+}
+
+// What is left of the light in n pixels of a row; 1 beside the wall.
+CAROM_WIDE void Wall::left(const int* column, int n, float y, float* __restrict factor) const {
+    for (int k = 0; k < n; ++k) {
+        const float x = view_.ray_x(float(column[k]));
+        const float per = 1 / (normal_.x * x + normal_.y * y + normal_.z);
+        const float u = (along_u_.x * x + along_u_.y * y + along_u_.z) * per;
+        const float v = (along_v_.x * x + along_v_.y * y + along_v_.z) * per;
+        const bool there = (u >= 0) & (u <= 1) & (v >= 0) & (v <= 1) & (level_ * per > 0);
+        float some = between(light_.data(), spots_.places(), u, v) * (1.0f / 65535);
+        if (face_.fade > 0) some = 1 - rim(u, v) * (1 - some);
+        factor[k] = there ? some : 1;
     }
 }
 
@@ -184,7 +209,8 @@ void draw(const View& view, const Look& look, const Edge& edge, const Visibility
     if (!(length > 1e-6)) return;
     const double ux = (bx - ax) / length, uy = (by - ay) / length;
     const double reach = 0.5 * look.line_width + 1;
-    const Span rows = span(std::min(ay, by) - reach, std::max(ay, by) + reach, view.height);
+    const Span rows =
+        common(span(std::min(ay, by) - reach, std::max(ay, by) + reach, view.height), frame.rows);
     const Span columns = span(std::min(ax, bx) - reach, std::max(ax, bx) + reach, view.width);
     const int samples = view.samples;
     for (int j = rows.first; j <= rows.last; ++j) {

@@ -13,9 +13,10 @@ public:
     Wall(const View& view, const Look& look, const Face& face);
 
     // A breath of colour, lightest in the middle, and the grid.
-    void paint(Frame& frame) const;
-    // What spheres take away of its light, where it is seen.
-    void darken(const std::vector<Ball>& balls, const Visibility& seen, Frame& frame);
+    void paint(Frame& frame);
+    // What spheres take away of its light, and where it is seen.
+    void light(const std::vector<Ball>& balls);
+    void darken(const Visibility& seen, Frame& frame) const;
 
 private:
     // Where a ray meets it.
@@ -28,6 +29,7 @@ private:
 
     void shadow(const Ball& ball, F3 lamp);
     void spot(const Ball& ball);
+    void left(const int* column, int n, float y, float* factor) const;
 
     View view_;
     Look look_;
@@ -36,7 +38,10 @@ private:
     F3 along_u_, along_v_;  // u = along_u·d / normal·d for a ray d
     float level_;           // normal · corner
     Bounds bounds_;
+    std::vector<Span> columns_;  // of each row, where it is seen
+    bool dark_ = false;          // does anything take light away?
     LightMap shadows_, spots_;
+    std::vector<uint16_t> light_;  // what both leave, of 65535
 };
 
 // A line, where no sphere is before it.

@@ -82,7 +82,8 @@ Hit meet(const View& view, F3 center, float radius, int third, int i, int j) {
 template <class Paint>
 void trace(const View& view, F3 center, float radius, int third, float width, float back_width,
            Frame& frame, Paint paint) {
-    const Bounds bounds = around(view, center, radius, 2);
+    Bounds bounds = around(view, center, radius, 2);
+    bounds.y = common(bounds.y, frame.rows);
     const int columns = bounds.x.last - bounds.x.first + 2;
     if (columns < 2 || bounds.y.first > bounds.y.last) return;
     std::vector<Hit> row(columns), below(columns);

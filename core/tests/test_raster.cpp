@@ -156,18 +156,33 @@ TEST(lines_are_hidden_by_what_is_before_them) {
 
 TEST(a_light_map_keeps_what_is_drawn_into_any_of_its_sizes) {
     LightMap map(10, 10, 0.05f);
+    const auto at = [&](float u, float v) {
+        return between(map.finest().data(), map.places(), u, v);
+    };
     for (const float wide : {0.06f, 0.5f, 3.0f}) {
         map.clear();
         map.splat(4, 6, 3 * wide, 3 * wide, wide, [=](float u, float v) {
             return 0.5f * std::exp(-(u * u + v * v) / (wide * wide));
         });
         map.merge();
-        CHECK(std::abs(map.at(0.4f, 0.6f) - 0.5f) < 0.12f);
-        CHECK(std::abs(map.at(0.4f + 0.1f * wide, 0.6f) - (1 - 0.5f * std::exp(-1.0f))) < 0.06f);
+        CHECK(std::abs(at(0.4f, 0.6f) - 0.5f) < 0.12f);
+        CHECK(std::abs(at(0.4f + 0.1f * wide, 0.6f) - (1 - 0.5f * std::exp(-1.0f))) < 0.06f);
     }
     map.clear();
     map.merge();
-    CHECK(map.at(0.4f, 0.6f) == 1);
+    CHECK(at(0.4f, 0.6f) == 1);
+}
+
+TEST(a_picture_does_not_remember_the_one_before) {
+    Spheres s;
+    s.add({0, 0, -1}, 0.5, 0xffffff);
+    for (const double contact : {0.0, 0.5}) {
+        Face floor = floor_at(-2);
+        floor.contact = contact;
+        Raster raster(view(), look(), {{floor}, {}, {}});
+        const std::vector<uint8_t> first = drawn(raster, s);
+        CHECK(first == drawn(raster, s));
+    }
 }
 
 TEST(strange_pictures_do_no_harm_and_come_out_the_same_twice) {

@@ -151,8 +151,18 @@ class _Job:
             value = getattr(self, name)
             if value is not None:
                 number(name, value, **({"above": 0} if name == "fps" else {}))
+        if self.begin is not None and self.begin < self.earliest:
+            stands = "the recording begins" if self.is_recording else "the simulation is already"
+            msg = (
+                f"the first moment would be {self.begin:.9g}, but {stands} at "
+                f"{self.earliest:.9g}; begin later"
+            )
+            raise InputError(msg)
         if not self.path.parent.is_dir():
             msg = f"there is no folder {self.path.parent}; make it first, or write elsewhere"
+            raise FileError(msg)
+        if self.path.is_dir():
+            msg = f"{self.path} is a folder; write elsewhere"
             raise FileError(msg)
 
     @property
@@ -173,6 +183,11 @@ class _Job:
         """Time of the first picture."""
         if self.begin is not None:
             return self.begin
+        return self.earliest
+
+    @property
+    def earliest(self) -> float:
+        """The first moment that can be shown."""
         return float(self.source.start if self.is_recording else self.source.time)
 
     @property

@@ -117,6 +117,8 @@ def test_a_recording_gives_the_same_film(tmp_path):
     a, b = (decoded(tmp_path / name)[0] for name in ("a.mp4", "b.mp4"))
     assert len(a) == len(b)
     assert all(distance(x, y) < 0.5 for x, y in zip(a, b, strict=True))
+    with pytest.raises(InputError, match="be -1, but the recording begins at 0; begin later"):
+        carom.render(recording, tmp_path / "a.mp4", begin=-1.0)
     carom.render(recording, tmp_path / "a.png", until=1.5, **SMALL)
     sim = gas()
     sim.run(until=1.5)
@@ -206,6 +208,8 @@ def test_without_h264_there_is_a_film_too(tmp_path, monkeypatch):
         ("a.mp4", {"speed": 0}, "speed is 0; it must be more than 0"),
         ("a.mp4", {"fps": 0}, "fps is 0; it must be more than 0"),
         ("a.mp4", {"fps": 1000}, "fps is 1000; a film shows 240 pictures per second at most"),
+        ("a.gif", {"fps": 1e-5}, "fps is 1e-05; a GIF shows 0.01 pictures per second at least"),
+        ("a.mp4", {"begin": -5}, "would be -5, but the simulation is already at 0; begin later"),
         ("a.gif", {"fps": 60}, "fps is 60; a GIF shows 50 pictures per second at most"),
         ("a.mp4", {"speed": 1e-9}, "would have .* pictures, more than 200,000; show less time"),
         ("a.mp4", {"begin": float("nan")}, "begin is nan; give a finite number"),
@@ -352,3 +356,17 @@ def test_ctrl_c_on_the_command_line(tmp_path, monkeypatch, capsys):
     assert command("gas", "-o", str(target), "--size", "160x90") == 130
     assert "Stopped by Ctrl-C" in capsys.readouterr().err
     assert len(decoded(target)[0]) == 4
+
+
+def test_ctrl_c_before_the_first_picture_keeps_an_old_film_and_claims_nothing(
+    tmp_path, monkeypatch, capsys
+):
+    def stop(self, pixels):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(film.Film, "add", stop)
+    target = tmp_path / "a.mp4"
+    target.write_bytes(b"old")
+    assert command("gas", "-o", str(target), "--size", "160x90") == 130
+    assert "holds" not in capsys.readouterr().err
+    assert target.read_bytes() == b"old"

@@ -1,6 +1,5 @@
 """``carom render``: a picture or a film, without a browser."""
 
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -155,7 +154,7 @@ def _shown(target: str, words: list[str], seed: int | None) -> tuple[Any, str]:
 def _execute(shown: Any, path: str, options: dict[str, Any], label: str, *, quiet: bool) -> int:
     """Render with a progress bar on standard error, if somebody looks at it."""
     console = report.notes()
-    pictures = 1
+    drawn = 0
     with Progress(
         TextColumn("{task.description}", style="bold"),
         BarColumn(bar_width=None),
@@ -169,16 +168,18 @@ def _execute(shown: Any, path: str, options: dict[str, Any], label: str, *, quie
         task = bar.add_task(label, total=None, shown="")
 
         def show(now: Progressed) -> None:
-            nonlocal pictures
-            pictures = now.done
+            nonlocal drawn
+            drawn = now.done
             text = f"picture {now.done:,} of {now.total:,}, time {now.time:.4g}"
             bar.update(task, completed=now.done, total=now.total, shown=text)
 
         try:
             render(shown, path, progress=show, **options)
         except KeyboardInterrupt:
-            kept = f"Stopped by Ctrl-C; {path} holds {pictures} pictures until then."
-            if Path(path).exists():
+            # Only films are kept in part; one that is there may be an old one.
+            if drawn and not path.lower().endswith(".html"):
+                held = "1 picture" if drawn == 1 else f"{drawn:,} pictures"
+                kept = f"Stopped by Ctrl-C; {path} holds {held} until then."
                 console.print(Text(kept, style="yellow"), soft_wrap=True)
             raise typer.Exit(INTERRUPTED) from None
-    return pictures
+    return max(1, drawn)

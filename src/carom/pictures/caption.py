@@ -1,7 +1,7 @@
 """Words in a picture: title, clock, and what the colours mean; drawn with Pillow."""
 
 import math
-import unicodedata
+from collections.abc import Callable
 from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
@@ -10,14 +10,13 @@ import numpy as np
 
 from carom.color import SPECIES
 from carom.errors import InputError
+from carom.pictures.letters import Letters
 from carom.pictures.look import COLLISIONS, SPEEDS, along, parts, saturated
 from carom.pictures.painter import Pixels, Style
 from carom.state import Floats, State
 
 LEAST = 11.5  #: size of letters in pixels; smaller ones run together
 HUES = 5  #: rows of the energy scale: a sphere keeps its own hue
-#: The font that comes with Pillow has little more than ASCII.
-PLAIN = str.maketrans({"×": "x", "·": "-", "–": "-", "−": "-", "’": "'", "π": "pi", "ß": "ss"})
 
 
 def pillow() -> tuple[ModuleType, ModuleType, ModuleType]:
@@ -102,15 +101,18 @@ class Caption:
 
     def __init__(self, title: str, legend: Legend, style: Style, step: float) -> None:
         self._image, self._draw, font = pillow()
-        self._title = _plain(title)
         self._legend = legend
         # Small pictures need words that are larger in proportion.
         self._unit = min(style.size[1], 1.2 * style.size[0]) / 720
         self._unit *= max(1.0, (480 / style.size[1]) ** 0.5)
+        letters = Letters(title, font)
+        self._title = letters.text
         self._fonts = {
-            name: font.load_default(max(LEAST, size * self._unit))
+            name: letters.sized(max(LEAST, size * self._unit))
             for name, size in (("title", 25), ("clock", 22), ("legend", 17))
         }
+        self._still: _Overlay | None = None
+        self._still_for = 0.0
         self._decimals = min(9, max(2, math.ceil(-math.log10(step) - 1e-9))) if step > 0 else 2
         palette = style.palette
         self._ink, self._back = _rgb(parts(palette.text)), _rgb(parts(palette.back))
@@ -118,14 +120,26 @@ class Caption:
 
     def write(self, pixels: Pixels, time: float, full: float) -> Pixels:
         """Add the words of a moment; `full` is the end of the scale of colours."""
+        if self._still is None or self._still_for != full:
+            self._still = _Overlay(lambda ground: self._draw_still(ground, full), pixels)
+            self._still_for = full
+        result = self._still.over(pixels)
+        edge = 28 * self._unit
+        strip = result[: math.ceil(edge + 2 * self._fonts["clock"].size)]
+        image = self._image.fromarray(strip)
+        clock = f"time {time:.{self._decimals}f}"
+        place = (image.size[0] - edge, edge)
+        self._text(self._draw.Draw(image), place, clock, "clock", "rt", self._ink)
+        strip[:] = np.asarray(image)
+        return result
+
+    def _draw_still(self, pixels: Pixels, full: float) -> Pixels:
+        """What stays from picture to picture: title and legend."""
         image = self._image.fromarray(pixels)
         draw = self._draw.Draw(image)
-        width, height = image.size
         edge = 28 * self._unit
         self._text(draw, (edge, edge), self._title, "title", "lt", self._ink)
-        clock = f"time {time:.{self._decimals}f}"
-        self._text(draw, (width - edge, edge), clock, "clock", "rt", self._ink)
-        self._draw_legend(draw, edge, height - edge, full)
+        self._draw_legend(draw, edge, image.size[1] - edge, full)
         return np.asarray(image)
 
     def _text(
@@ -165,12 +179,42 @@ class Caption:
         draw.rectangle(frame, None, self._faint, max(1, round(unit)))
 
 
+class _Overlay:
+    """Something drawn once, to be laid over many pictures.
+
+    Drawn on black and on white, it shows its colour and how much of the ground it lets through.
+
+    Parameters
+    ----------
+    draw : callable
+        Draws on pixels and returns the result.
+    pixels : (height, width, 3) uint8
+        A picture of that size.
+    """
+
+    def __init__(self, draw: Callable[[Pixels], Pixels], pixels: Pixels) -> None:
+        black, white = (draw(np.full_like(pixels, level)) for level in (0, 255))
+        through = np.clip(white.astype(np.int16) - black, 0, 255)
+        covered = (through < 255).any(axis=2)
+        self._parts = []
+        # The upper and the lower half: title and legend lie far apart.
+        middle = len(pixels) // 2
+        for half in (slice(0, middle), slice(middle, None)):
+            rows, columns = (np.flatnonzero(covered[half].any(axis=axis)) for axis in (1, 0))
+            if not len(rows):
+                continue
+            first = half.start + rows[0]
+            at = np.s_[first : half.start + rows[-1] + 1, columns[0] : columns[-1] + 1]
+            self._parts.append((at, black[at].astype(np.uint16), through[at].astype(np.uint16)))
+
+    def over(self, pixels: Pixels) -> Pixels:
+        """A picture with it."""
+        result = pixels.copy()
+        for at, color, through in self._parts:
+            result[at] = np.minimum(color + (result[at] * through + 127) // 255, 255)
+        return result
+
+
 def _rgb(color: Floats) -> tuple[int, int, int]:
     red, green, blue = (int(255 * part + 0.5) for part in color)
     return red, green, blue
-
-
-def _plain(text: str) -> str:
-    """The same in letters that the font has."""
-    flat = unicodedata.normalize("NFKD", text.translate(PLAIN))
-    return flat.encode("ascii", "ignore").decode()

@@ -88,7 +88,7 @@ def look(room: Room, gravity: Floats, size: tuple[int, int], camera: Viewpoint |
     if camera is not None:
         target = np.array(camera.target)
         line = np.array(camera.position) - target
-        distance = float(np.linalg.norm(line))
+        distance = math.hypot(*line)  # which does not underflow
         height = math.asin(max(-1.0, min(1.0, float(line @ above) / distance)))
         azimuth = math.atan2(line @ side, -(line @ forward))
         right, up, back = _axes(above, azimuth, max(-STEEPEST, min(STEEPEST, height)))

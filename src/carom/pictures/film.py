@@ -1,6 +1,8 @@
 """Films: pictures one after another into an MP4 or GIF file, with PyAV."""
 
 from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
 from types import ModuleType, TracebackType
@@ -14,6 +16,7 @@ from carom.pictures.painter import Pixels
 
 BLUR = {"draft": 28, "good": 18}  #: constant rate factor of H.264, by quality
 RATES = {"draft": 2_000_000, "good": 12_000_000}  #: bit/s where there is no H.264
+SLOWEST = 0.01  #: pictures per second; files count only so long that a picture stays
 FASTEST = 240  #: pictures per second of an MP4
 FASTEST_GIF = 50  #: pictures per second: browsers slow down faster ones
 BT709 = 1  #: the colours of high-definition video (ITU-T H.273, table 2, 3 and 4)
@@ -50,6 +53,9 @@ def check(suffix: str, size: tuple[int, int], fps: float) -> None:
     if fps > most:
         msg = f"fps is {fps:g}; a {kind} shows {most} pictures per second at most"
         raise InputError(msg)
+    if fps < SLOWEST:
+        msg = f"fps is {fps:g}; a {kind} shows {SLOWEST:g} pictures per second at least"
+        raise InputError(msg)
     if suffix != ".gif" and (size[0] % 2 or size[1] % 2):
         even = f"{size[0] + size[0] % 2}x{size[1] + size[1] % 2}"
         msg = f"an MP4 film cannot have the odd size {size[0]}x{size[1]}; take {even}"
@@ -59,6 +65,7 @@ def check(suffix: str, size: tuple[int, int], fps: float) -> None:
 class Film:
     """A file that grows picture by picture, and has its name when it is whole.
 
+    A thread encodes one picture while the next is drawn.
     Ended by an error after some pictures, it holds these: nothing that was drawn is lost.
 
     Parameters
@@ -89,24 +96,30 @@ class Film:
         self._part = path.with_name(path.name + ".part")
         self._fps = fps
         self._gif = path.suffix.lower() == ".gif"
+        if self._gif:
+            self._take_palette(gamut())
         self.frames = 0
         last = str(round(100 / fps))  # hundredths of a second that the last picture stays
         options = {"final_delay": last} if self._gif else {"movflags": "+faststart"}
         kind = "gif" if self._gif else "mp4"
         try:
+            self._part.touch()  # PyAV opens it with the first picture: later than one wants to know
             self._file = pyav().open(str(self._part), "w", format=kind, options=options)
         except OSError as error:
-            msg = f"cannot write {path}: {error.strerror}"
-            raise FileError(msg) from error
+            raise self._refused(error) from error
         self._stream = self._gif_stream(size) if self._gif else self._mp4_stream(size, quality)
-        if self._gif:
-            image = pillow()[0].fromarray(gamut())
-            self._palette = image.quantize(256, dither=0)
-            colors = np.zeros((256, 4), np.uint8)
-            given = np.array(self._palette.getpalette(), np.uint8).reshape(-1, 3)
-            colors[:, 0] = 255  # opaque; then red, green, blue
-            colors[: len(given), 1:] = given
-            self._colors = colors
+        self._worker = ThreadPoolExecutor(1)
+        self._pending: Future[None] | None = None
+
+    def _refused(self, error: OSError) -> FileError:
+        return FileError(f"cannot write {self._path}: {error.strerror}")
+
+    def _take_palette(self, pixels: Pixels) -> None:
+        self._palette = pillow()[0].fromarray(pixels).quantize(256, dither=0)
+        given = np.array(self._palette.getpalette(), np.uint8).reshape(-1, 3)
+        self._colors = np.zeros((256, 4), np.uint8)
+        self._colors[:, 0] = 255  # opaque; then red, green, blue
+        self._colors[: len(given), 1:] = given
 
     def _gif_stream(self, size: tuple[int, int]) -> Any:
         stream: Any = self._file.add_stream("gif", rate=100)
@@ -134,26 +147,35 @@ class Film:
 
     def add(self, pixels: Pixels) -> None:
         """Append a picture, (height, width, 3)."""
+        self._settle()
+        self._pending = self._worker.submit(self._encode, pixels, self.frames)
+        self.frames += 1
+
+    def _settle(self) -> None:
+        """Wait for the picture that is being encoded."""
+        if self._pending is not None:
+            self._pending.result()
+            self._pending = None
+
+    def _encode(self, pixels: Pixels, number: int) -> None:
         av = pyav()
         frame: Any
         if self._gif:
             image = pillow()[0].fromarray(pixels).quantize(palette=self._palette, dither=0)
             frame = av.VideoFrame.from_ndarray((np.asarray(image), self._colors), format="pal8")
             # A GIF counts in hundredths of a second; whole ones stay nearest to the truth.
-            frame.pts, frame.time_base = round(100 * self.frames / self._fps), Fraction(1, 100)
+            frame.pts, frame.time_base = round(100 * number / self._fps), Fraction(1, 100)
         else:
             frame = av.VideoFrame.from_ndarray(pixels, format="rgb24")
             frame = frame.reformat(format="yuv420p", dst_colorspace="ITU709")
-            frame.pts = self.frames
-        self.frames += 1
+            frame.pts = number
         self._write(self._stream.encode(frame))
 
     def _write(self, packets: Any) -> None:
         try:
             self._file.mux(packets)
         except OSError as error:
-            msg = f"cannot write {self._path}: {error.strerror}"
-            raise FileError(msg) from error
+            raise self._refused(error) from error
 
     def __enter__(self) -> Self:
         return self
@@ -164,12 +186,24 @@ class Film:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        whole = False
         try:
+            self._settle()  # raises again what could not be written
             if self.frames:
                 self._write(self._stream.encode(None))
+                whole = True
         finally:
+            self._worker.shutdown()
+            self._close(whole)
+
+    def _close(self, whole: bool) -> None:
+        try:
             self._file.close()
-            if self.frames and not isinstance(error, FileError):
+            if whole:
                 self._part.replace(self._path)
-            else:
+        except OSError as error:
+            if whole:
+                raise self._refused(error) from error
+        finally:
+            with suppress(OSError):
                 self._part.unlink(missing_ok=True)

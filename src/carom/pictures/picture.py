@@ -1,5 +1,6 @@
 """One picture, and how it is made."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -40,9 +41,13 @@ class Picture:
         if target.suffix.lower() != ".png":
             msg = f"a picture is a .png file, not {str(path)!r}; give it a name that ends so"
             raise InputError(msg)
+        part = target.with_name(target.name + ".part")
         try:
-            target.write_bytes(png(self.pixels))
+            part.write_bytes(png(self.pixels))
+            part.replace(target)
         except OSError as error:
+            with suppress(OSError):
+                part.unlink(missing_ok=True)
             msg = f"cannot write {target}: {error.strerror}"
             raise FileError(msg) from error
 
