@@ -316,6 +316,7 @@ class TestCommand:
         ("line", "sentence"),
         [
             ("measure events.parquet msc", "no observable 'msc'; did you mean 'msd'?"),
+            ("measure events.parquet zz", "there is no observable 'zz'; carom measure takes names"),
             ("measure events.parquet list", "carom measure takes names with commas between"),
             ("measure events.parquet msd -o out.txt", "out.txt is none of .csv, .json, .npz"),
             ("measure events.parquet msd --from 1e9", "start is 1000000000, but events.parquet"),

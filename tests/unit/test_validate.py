@@ -14,7 +14,7 @@ import pytest
 from tests.physics.plants import PLANTS
 
 from carom.cli import main
-from carom.errors import FileError, InputError, RunError
+from carom.errors import FileError, InputError, RunError, UnknownNameError
 from carom.observe import Estimate
 from carom.validate import catalogue, figures, references, results, suite
 from carom.validate.row import Check, Found, Panel, Row
@@ -239,6 +239,14 @@ def test_the_page_shows_the_stored_report():
     planted = [plant for group in PLANTS.values() for plant in group]
     assert blocks["plants"].count("\n| ") == len(planted) + 1
     assert "**none**" not in blocks["plants"]
+
+
+def test_names_to_choose_from_come_once():
+    with pytest.raises(UnknownNameError) as refused:
+        catalogue.chosen("zzzz")
+    names = str(refused.value).partition("there are ")[2].split(", ")
+    assert {"pairs", "transport", "galperin-2"} < set(names)
+    assert len(names) == len(set(names))
 
 
 class TestForReal:

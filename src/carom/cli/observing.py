@@ -27,10 +27,12 @@ def observables(names: str | None, what: str = "--observe") -> dict[str, Observa
     for name in [] if names is None else names.split(","):
         plain = name.strip().lower().replace("_", "-")
         if plain not in OBSERVABLES:
-            close = nearest(plain, OBSERVABLES) if plain not in ("", "list") else ""
-            msg = f"there is no observable {plain!r}{close}"
-            if not close.startswith("; did"):
-                msg = f"{what} takes names with commas between them: {', '.join(OBSERVABLES)}"
+            names = f"{what} takes names with commas between them: {', '.join(OBSERVABLES)}"
+            if plain in ("", "list"):
+                raise UnknownNameError(names)
+            close = nearest(plain, OBSERVABLES)
+            hint = close if close.startswith("; did") else f"; {names}"
+            msg = f"there is no observable {plain!r}{hint}"
             raise UnknownNameError(msg)
         if plain in found:
             msg = f"{what} names {plain} twice; once is enough"
