@@ -148,6 +148,16 @@ class TestCommand:
         assert "2 of 6 rows are red: broken, z2.0" in " ".join(out.split())
         assert out.count("RED") == 2
 
+    def test_ctrl_c_before_anything_is_done(self, cli, monkeypatch):
+        def stopped(some, mode):
+            raise KeyboardInterrupt
+            yield
+
+        monkeypatch.setattr(suite, "results", stopped)
+        status, out, err = cli("validate --quick -o report")
+        assert (status, out) == (130, "")
+        assert err == "carom: stopped after 0 of 3 checks; what is done is kept\n"
+
     def test_json(self, cli):
         status, out, err = cli("validate --quick --json")
         assert (status, err) == (1, "")
