@@ -54,6 +54,13 @@ def result(rows: list[dict[str, Any]], left_out: list[str]) -> dict[str, Any]:
     }
 
 
+def as_text(data: dict[str, Any], rows: str) -> str:
+    """JSON in which each of the rows, the last entry of the data, has a line of its own."""
+    lines = ",\n".join("  " + json.dumps(row, allow_nan=False) for row in data[rows])
+    head = json.dumps({**data, rows: []}, indent=1, allow_nan=False).removesuffix("[]\n}")
+    return f"{head}[\n{lines}\n ]\n}}\n"
+
+
 def write(path: Path, data: dict[str, Any]) -> None:
     """Write a result, a row a line.
 
@@ -62,10 +69,8 @@ def write(path: Path, data: dict[str, Any]) -> None:
     FileError
         If the file cannot be written.
     """
-    rows = ",\n".join("  " + json.dumps(row, allow_nan=False) for row in data["rows"])
-    head = json.dumps({**data, "rows": []}, indent=1, allow_nan=False).removesuffix("[]\n}")
     try:
-        path.write_text(f"{head}[\n{rows}\n ]\n}}\n", encoding="utf-8")
+        path.write_text(as_text(data, "rows"), encoding="utf-8")
     except OSError as error:
         msg = f"cannot write {path}: {error.strerror}; choose another file with -o"
         raise FileError(msg) from error

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from carom.bench import machine
+from carom.bench.results import as_text
 from carom.errors import FileError, InputError
 from carom.observe import Estimate
 from carom.validate.catalogue import FAMILIES, checks
@@ -45,10 +46,8 @@ def write(folder: Path, data: dict[str, Any]) -> None:
     FileError
         If they cannot be written.
     """
-    checks_ = ",\n".join("  " + json.dumps(check, allow_nan=False) for check in data["checks"])
-    head = json.dumps({**data, "checks": []}, indent=1, allow_nan=False).removesuffix("[]\n}")
     try:
-        for name, text in ((FILE, f"{head}[\n{checks_}\n ]\n}}\n"), (PAGE, markdown(data))):
+        for name, text in ((FILE, as_text(data, "checks")), (PAGE, markdown(data))):
             part = folder / (name + ".part")
             part.write_text(text, encoding="utf-8")
             part.replace(folder / name)
