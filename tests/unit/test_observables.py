@@ -239,7 +239,7 @@ class TestCommandLine:
         ("names", "message"),
         [
             ("presure", "there is no observable 'presure'; did you mean 'wall-pressure'?"),
-            ("list", "names with commas between them: bulk-viscosity, collision-rate, "),
+            (",", "names with commas between them: bulk-viscosity, collision-rate, "),
             ("", "names with commas between them: bulk-viscosity, "),
             ("msd,msd", "--observe names msd twice"),
             ("wall-pressure", "WallPressure needs a wall of finite area"),

@@ -7,13 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom import mechanics, theory
-from carom.checks import number
 from carom.errors import InputError
 from carom.observe.batch import Moment
 from carom.observe.estimate import Estimate
 from carom.observe.fluid import FREEZES, UP_TO, in_range, is_gas
 from carom.observe.kinds import MOST_KINDS, Kinds, labels, legend, letters, refuse_walls
-from carom.observe.sampled import Sampled
+from carom.observe.sampled import Reaching
 from carom.observe.series import poisson
 from carom.observe.table import Table, Theory
 from carom.state import Floats, State
@@ -23,7 +22,7 @@ CENTRES = 500  #: spheres around which one sample counts the others
 NEAR = 0.2  #: diameters beyond contact from which the contact value is extrapolated
 
 
-class RDF(Sampled):
+class RDF(Reaching):
     """Radial distribution g(r): spheres at a distance, over those that chance would put there.
 
     In a periodic box, over all spheres alike, in column `g`, and where there are several kinds
@@ -45,14 +44,6 @@ class RDF(Sampled):
     M. P. Allen, D. J. Tildesley, Computer Simulation of Liquids, 2nd ed., Oxford 2017,
     section 8.2.
     """
-
-    apart = 100.0
-
-    def __init__(
-        self, reach: float | None = None, every: float | None = None, *, at: object = None
-    ) -> None:
-        super().__init__(every, at=at)
-        self._asked = None if reach is None else number("reach", reach, above=0)
 
     def begin(self, moment: Moment) -> None:
         """Refuse what has no mean density."""

@@ -102,7 +102,8 @@ class CollisionRate(Observable):
 class CollisionsPerSphere(Observable):
     """How many collisions each sphere had, with walls too.
 
-    Result: `Table` of the distribution. It reads the spheres' own counters where measuring begins and ends, and so costs nothing.
+    It reads the spheres' own counters where measuring begins and ends, and so costs nothing.
+    Result: `Table` of the distribution.
     """
 
     def begin(self, moment: Moment) -> None:
