@@ -7,16 +7,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from carom import mechanics
 from carom.errors import InputError
 from carom.observe.batch import Batch, Moment
-from carom.observe.kinds import mean_free_time
 from carom.observe.observable import Observable
 from carom.state import EVENT, State
 
 #: Events in a batch: enough that NumPy's calls cost little, few enough for the cache. Cut at
 #: this fixed number, sums round the same whatever the machine's speed.
 BATCH = 8192
-#: Mean free times between two samples, at least.
+#: Radii that spheres move between two samples, at least.
 LEAST = 1e-6
 
 
@@ -148,11 +148,11 @@ def _check_or_begin(observable: Observable, moment: Moment) -> None:
 def _check_pace(observable: Observable, moment: Moment) -> None:
     """Refuse to look so often that time would never get anywhere."""
     again = math.inf if observable.schedule is None else observable.schedule.again
-    least = LEAST * mean_free_time(moment.state, moment.world)
+    least = LEAST * mechanics.crossing_time(moment.state, moment.world)
     if again < least:
         msg = (
             f"{observable.name} would look at the spheres each {again:g}, and no run would get "
-            f"far; let it look at most once in {least:.2g}, a millionth of a free flight"
+            f"far; let it look at most once in {least:.2g}, in which spheres move 1e-6 radii"
         )
         raise InputError(msg)
 
