@@ -77,3 +77,14 @@ class State:
             k: v.copy() for k, v in values.items() if isinstance(v, np.ndarray)
         }
         return replace(self, **arrays)
+
+
+def readonly(state: State) -> State:
+    """The same with arrays that refuse changes in place."""
+    values = {field.name: getattr(state, field.name) for field in fields(state)}
+    views: dict[str, Any] = {
+        name: array.view() for name, array in values.items() if isinstance(array, np.ndarray)
+    }
+    for view in views.values():
+        view.flags.writeable = False
+    return replace(state, **views)

@@ -77,6 +77,9 @@ class TestPressure:
         trace = found["pressure"][:3].mean()
         # The kinetic part of N spheres at rest together is (N - 1) kT.
         assert trace == pytest.approx((z.result().value - 1 / N) * density_kT, rel=1e-3)
+        volume = sim.world.period.prod()
+        expected = z.theory().value * density_kT - sim.temperature / volume
+        assert found["pressure_theory"][0] == pytest.approx(expected, rel=1e-12)
         assert found["component"].tolist() == ["xx", "yy", "zz", "xy", "xz", "yz"]
 
     def test_walls(self):
@@ -171,6 +174,17 @@ class TestFlights:
         assert np.abs(off).max() < 5
         width = np.diff(table[next(iter(table.columns))])[0]
         assert table["density"].sum() * width == pytest.approx(1, abs=0.02)
+
+    def test_of_many_spheres_the_distribution_is_as_wide(self):
+        """In a batch few of them collide twice, and those that do have flown shortly."""
+        sim = carom.Simulation(carom.scenes.fluid(n=30_000, packing_fraction=0.25, seed=1))
+        sim.run(collisions=30_000)
+        for one in (observe.FreeTime(), observe.FreePath()):
+            sim.run(collisions=200_000, observe=one)
+            table, mean = one.result(), one.mean().value
+            along = table[next(iter(table.columns))]
+            assert along[-1] == pytest.approx(8 * mean, rel=0.1)
+            assert table["density"].sum() * (along[1] - along[0]) == pytest.approx(1, abs=0.02)
 
     def test_speeds_are_followed(self, dilute):
         sim, _, path = dilute

@@ -204,6 +204,18 @@ class TestSpace:
         far = table["distance"] > 2.7
         assert table["g"][far].mean() == pytest.approx(1, abs=0.02)
 
+    def test_in_a_small_box_too_a_bin_begins_at_contact(self):
+        """A bin that reaches below it would show too few where spheres are densest."""
+        rdf = observe.RDF(every=1)
+        sim = carom.Simulation(carom.scenes.fluid(n=32, packing_fraction=0.3, seed=1))
+        sim.run(collisions=2000)
+        sim.run(collisions=200_000, observe=rdf)
+        table = rdf.result()
+        assert table["distance"][:2] == pytest.approx([1.01, 1.03], abs=1e-9)
+        assert table["distance"][-1] < sim.world.period[0] / 2
+        chi = (1 - 0.15) / (1 - 0.3) ** 3
+        assert table["g"][0] == pytest.approx(chi, abs=5 * table["g_error"][0])
+
     @pytest.mark.parametrize("reach", [0.6, 1.5, 2.9])
     def test_distances_are_those_of_all_pairs(self, reach):
         rng = np.random.default_rng(1)

@@ -13,12 +13,18 @@ import pytest
 
 import carom
 from carom import scenes
-from carom.cli import main
+from carom.cli import commands, main
 
 NUMBERS = {
     "time", "collisions", "wall_collisions", "collisions_per_second", "energy_drift",
     "momentum", "max_overlap", "n",
 }  # fmt: skip
+
+
+COMMANDS = (
+    "scenes", "show", "run", "compare", "sketch", "bench", "validate", "render", "measure", "info",
+    "check", "convert",
+)  # fmt: skip
 
 
 @pytest.fixture
@@ -268,12 +274,14 @@ class TestCtrlC:
         assert (status, out, err.strip()) == (130, "", "")
 
     def test_elsewhere_nothing_is_said(self, cli, monkeypatch):
-        def interrupted(*_):
+        def interrupted(*_, **__):
             raise KeyboardInterrupt
 
         monkeypatch.setattr(scenes, "names", interrupted)
         status, out, err = cli("scenes")
         assert (status, out, err.strip()) == (130, "", "")
+        monkeypatch.setattr(commands, "app", interrupted)  # while it is still being put together
+        assert cli("scenes") == (130, "", "")
 
 
 class TestManners:
@@ -283,12 +291,12 @@ class TestManners:
     def test_without_words_it_helps(self, cli):
         status, out, err = cli("")
         assert (status, err) == (0, "")
-        for command in ("scenes", "show", "run", "compare", "sketch", "bench"):
+        for command in COMMANDS:
             assert command in out
         assert "--debug" in out
 
     def test_help_of_each_command(self, cli):
-        for command in ("scenes", "show", "run", "compare", "sketch", "bench"):
+        for command in COMMANDS:
             status, out, _ = cli(f"{command} --help")
             assert status == 0
             assert "--json" in out

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 
 import numpy as np
 import pytest
@@ -316,7 +317,8 @@ class TestCommand:
         ("line", "sentence"),
         [
             ("measure events.parquet msc", "no observable 'msc'; did you mean 'msd'?"),
-            ("measure events.parquet list", "carom measure takes names with commas between"),
+            ("measure events.parquet zz", "there is no observable 'zz'; carom measure takes names"),
+            ("measure events.parquet msd,", "carom measure takes names with commas between"),
             ("measure events.parquet msd -o out.txt", "out.txt is none of .csv, .json, .npz"),
             ("measure events.parquet msd --from 1e9", "start is 1000000000, but events.parquet"),
             ("measure events.parquet msd --from soon", "--from must be a number, not 'soon'"),
@@ -331,6 +333,14 @@ class TestCommand:
         assert (status, out) == (2, "")
         assert sentence in err
         assert err.count("\n") == 1
+
+    @pytest.mark.parametrize("line", ["run --observe list", "measure events.parquet list"])
+    def test_a_list_of_all(self, line, cli, recorded):
+        status, out, err = cli(line)
+        assert (status, err) == (0, "")
+        for name in OBSERVABLES:
+            assert re.search(rf"^{name} +[A-Z]", out, re.MULTILINE)
+        assert "Mean square displacement" in out
 
     def test_a_missing_file(self, cli):
         status, _, err = cli("measure nowhere.npz msd")

@@ -67,6 +67,7 @@ def test_where_it_has_no_meaning(make, options, message):
     [
         (lambda: observe.DensityProfile(axis="w"), "axis is 'w'"),
         (lambda: observe.DensityProfile(bins=1), "bins is 1; it must be at least 2"),
+        (lambda: observe.DensityProfile(bins=10**9), "it must be at least 2 and at most 1000"),
         (lambda: observe.RDF(reach=-1), "reach is -1"),
         (lambda: observe.MSD(at=[0, 1]), "lags are above 0"),
         (lambda: observe.Diffusion(between=(1, 2, 3)), "two lags, not 3"),
@@ -75,6 +76,8 @@ def test_where_it_has_no_meaning(make, options, message):
         (lambda: observe.ThermalConductivity((2, 1)), "the second lag of between is 1"),
         (lambda: observe.PressureTensor(every=-1), "every is -1"),
         (lambda: observe.Temperature(every=1, at=[2]), "both given"),
+        (lambda: observe.Temperature(every=1e-300), "Temperature would look .* each 1e-300"),
+        (lambda: observe.MSD(at=[1e-300, 2e-300]), "MSD would look .* each 2e-300"),
     ],
 )
 def test_bad_options(action, message):
@@ -236,7 +239,7 @@ class TestCommandLine:
         ("names", "message"),
         [
             ("presure", "there is no observable 'presure'; did you mean 'wall-pressure'?"),
-            ("list", "names with commas between them: bulk-viscosity, collision-rate, "),
+            (",", "names with commas between them: bulk-viscosity, collision-rate, "),
             ("", "names with commas between them: bulk-viscosity, "),
             ("msd,msd", "--observe names msd twice"),
             ("wall-pressure", "WallPressure needs a wall of finite area"),

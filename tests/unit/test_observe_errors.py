@@ -54,10 +54,19 @@ class TestBlocking:
         assert math.isnan(blocking(x).error)
         assert str(blocking([1.0, 2.0])) == "1.5(?)"
 
-    @pytest.mark.parametrize("values", [[[1.0, 2.0]], [1.0, math.nan]])
-    def test_what_is_no_series_is_refused(self, values):
-        with pytest.raises(carom.InputError, match="one row of finite numbers"):
-            blocking(values)
+    @pytest.mark.parametrize("look", [blocking, settling])
+    @pytest.mark.parametrize(
+        ("values", "message"),
+        [
+            ([[1.0, 2.0]], r"not an array of shape \(1, 2\)"),
+            ([1.0, math.nan] * 100, "number 1 is nan"),
+            ("soon", "not 'soon'"),
+            ([[1.0], [2.0, 3.0]], r"not \[\[1.0\]"),
+        ],
+    )
+    def test_what_is_no_series_is_refused(self, look, values, message):
+        with pytest.raises(carom.InputError, match=f"one row of finite numbers.*{message}"):
+            look(values)
 
     def test_a_ratio_knows_that_both_parts_vary(self):
         rng, found = np.random.default_rng(3), []
@@ -99,6 +108,9 @@ class TestEstimate:
             (-0.5, 0.096, "-0.50(10)"),
             (1234.5, 20.0, "1.23(2)e+03"),
             (1.5e-9, 2e-11, "1.50(2)e-09"),
+            (0.0, 1e-12, "0.0(10)e-12"),
+            (-1e-5, 3e-4, "0.0000(3)"),
+            (-0.4, 20.0, "0(2)e+01"),
             (0.0, 0.3, "0.0(3)"),
             (2.5, 0.0, "2.5"),
             (2.5, math.nan, "2.5(?)"),

@@ -225,6 +225,28 @@ def test_bad_schedules(options, message):
         heights(**options)
 
 
+def test_a_function_of_the_state_cannot_change_it():
+    @observe.observable
+    def freezes(state):
+        state.velocity[:] = 0
+        return 0.0
+
+    sim = gas()
+    with pytest.raises(ValueError, match="read-only"):
+        sim.run(duration=1, observe=freezes(every=0.5))
+    assert sim.kinetic_energy > 0
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, None, "x", 1j])
+def test_a_function_of_events_gives_numbers(value):
+    @observe.observable
+    def odd(batch):
+        return np.full(len(batch), value)
+
+    with pytest.raises(carom.InputError, match="odd returned what is no finite number"):
+        gas().run(collisions=5, observe=odd())
+
+
 def test_samples_alone_do_not_keep_a_run_alive_for_ever():
     sim = carom.Simulation()
     sim.add_many([(0, 0, 0), (3, 0, 0)], velocity=[(1, 0, 0), (0, 0, 0)])

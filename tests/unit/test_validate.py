@@ -14,7 +14,7 @@ import pytest
 from tests.physics.plants import PLANTS
 
 from carom.cli import main
-from carom.errors import FileError, InputError, RunError
+from carom.errors import FileError, InputError, RunError, UnknownNameError
 from carom.observe import Estimate
 from carom.validate import catalogue, figures, references, results, suite
 from carom.validate.row import Check, Found, Panel, Row
@@ -148,6 +148,16 @@ class TestCommand:
         assert "2 of 6 rows are red: broken, z2.0" in " ".join(out.split())
         assert out.count("RED") == 2
 
+    def test_ctrl_c_before_anything_is_done(self, cli, monkeypatch):
+        def stopped(some, mode):
+            raise KeyboardInterrupt
+            yield
+
+        monkeypatch.setattr(suite, "results", stopped)
+        status, out, err = cli("validate --quick -o report")
+        assert (status, out) == (130, "")
+        assert err == "carom: stopped after 0 of 3 checks; what is done is kept\n"
+
     def test_json(self, cli):
         status, out, err = cli("validate --quick --json")
         assert (status, err) == (1, "")
@@ -239,6 +249,14 @@ def test_the_page_shows_the_stored_report():
     planted = [plant for group in PLANTS.values() for plant in group]
     assert blocks["plants"].count("\n| ") == len(planted) + 1
     assert "**none**" not in blocks["plants"]
+
+
+def test_names_to_choose_from_come_once():
+    with pytest.raises(UnknownNameError) as refused:
+        catalogue.chosen("zzzz")
+    names = str(refused.value).partition("there are ")[2].split(", ")
+    assert {"pairs", "transport", "galperin-2"} < set(names)
+    assert len(names) == len(set(names))
 
 
 class TestForReal:

@@ -238,6 +238,7 @@ def run(
 
     The scene's own options go here too, as in: carom run fluid --n 1e6 --seed 2
     """
+    observed = observables(observe)
     times = parsed("every", every), parsed("checkpoint-every", checkpoint_every)
     plan = Plan(output, *times, force, record_events)
     if resume is not None:
@@ -251,7 +252,6 @@ def run(
         collisions=whole("collisions", collisions),
         events=counted(events),
     )
-    observed = observables(observe)
     if resume is None:
         sim = found.simulation(method, parsed("tick", tick))
         plan.begin(sim)
@@ -331,6 +331,8 @@ def _status(words: list[str], debug: bool) -> int:
         if "--help" in words and len(words) > 2 and words[1] in scenes.names():
             _print_options(words[1], quiet=True)
         return status
+    except KeyboardInterrupt:  # before a command has begun; later Typer makes an Abort of it
+        return INTERRUPTED
     except Exception as error:
         if debug:
             traceback.print_exc()

@@ -2,7 +2,9 @@
 
 from collections.abc import Sequence
 
+import typer
 from rich.console import Group, RenderableType
+from rich.table import Table as Grid
 from rich.text import Text
 
 from carom.checks import nearest
@@ -16,6 +18,8 @@ MOST_ROWS = 40  #: of a table on a terminal; --json has all
 def observables(names: str | None, what: str = "--observe") -> dict[str, Observable]:
     """Make the observables that a list of names asks for; `what` takes such lists.
 
+    For ``list`` all names are printed, and the program ends.
+
     Raises
     ------
     UnknownNameError
@@ -24,19 +28,33 @@ def observables(names: str | None, what: str = "--observe") -> dict[str, Observa
         If a name comes twice.
     """
     found: dict[str, Observable] = {}
+    if names is not None and names.strip().lower() == "list":
+        report.output().print(catalogue())
+        raise typer.Exit
     for name in [] if names is None else names.split(","):
         plain = name.strip().lower().replace("_", "-")
         if plain not in OBSERVABLES:
-            close = nearest(plain, OBSERVABLES) if plain not in ("", "list") else ""
-            msg = f"there is no observable {plain!r}{close}"
-            if not close.startswith("; did"):
-                msg = f"{what} takes names with commas between them: {', '.join(OBSERVABLES)}"
+            names = f"{what} takes names with commas between them: {', '.join(OBSERVABLES)}"
+            if not plain:
+                raise UnknownNameError(names)
+            close = nearest(plain, OBSERVABLES)
+            hint = close if close.startswith("; did") else f"; {names}"
+            msg = f"there is no observable {plain!r}{hint}"
             raise UnknownNameError(msg)
         if plain in found:
             msg = f"{what} names {plain} twice; once is enough"
             raise InputError(msg)
         found[plain] = OBSERVABLES[plain]()
     return found
+
+
+def catalogue() -> RenderableType:
+    """Each observable, and what it is in a sentence."""
+    lines = Grid.grid("", "", padding=(0, 2))
+    lines.columns[0].style = report.ACCENT
+    for name, observable in OBSERVABLES.items():
+        lines.add_row(name, Text((observable.__doc__ or "").partition("\n")[0]))
+    return lines
 
 
 def tables(observed: dict[str, Observable]) -> dict[str, Table | str]:

@@ -52,9 +52,9 @@ def validate(
     now = results.report(done)
     if json:
         report.write_json(now)
-    else:
+    elif done:
         _print(now, mode)
-    if folder:
+    if folder and done:
         _draw(folder, results.report(done, before), {check["family"] for check in done}, quiet)
     if interrupted:
         report.complain(f"stopped after {len(done)} of {len(checks)} checks; what is done is kept")

@@ -54,10 +54,7 @@ def blocking(values: ArrayLike) -> Estimate:
     >>> blocking([2.5] * 64)
     Estimate(2.5, 64 independent)
     """
-    x = np.asarray(values, np.float64)
-    if x.ndim != 1 or not np.isfinite(x).all():
-        msg = f"values must be one row of finite numbers, not an array of shape {x.shape}"
-        raise InputError(msg)
+    x = _row(values)
     n = len(x)
     if n == 0:
         return Estimate(math.nan, math.nan, math.nan)
@@ -145,11 +142,16 @@ def settling(values: ArrayLike) -> Settling:
     -------
     Settling
 
+    Raises
+    ------
+    InputError
+        If `values` is not one row of finite numbers.
+
     References
     ----------
     J. D. Chodera, J. Chem. Theory Comput. 12, 1799 (2016), doi:10.1021/acs.jctc.5b00784.
     """
-    x = np.asarray(values, np.float64)
+    x = _row(values)
     if len(x) > COARSE:
         size = len(x) // COARSE
         x = x[: len(x) // size * size].reshape(-1, size).mean(axis=1)
@@ -169,6 +171,23 @@ def settling(values: ArrayLike) -> Settling:
         error = math.sqrt(variance / len(after) + variance / len(before))
         shift = float(before.mean() - after.mean()) / error
     return Settling(cut / n, shift)
+
+
+def _row(values: ArrayLike) -> Floats:
+    """One row of finite numbers."""
+    try:
+        x = np.asarray(values, np.float64)
+    except (TypeError, ValueError):
+        msg = f"values must be one row of finite numbers, not {values!r:.60}"
+        raise InputError(msg) from None
+    if x.ndim != 1:
+        msg = f"values must be one row of finite numbers, not an array of shape {x.shape}"
+        raise InputError(msg)
+    if not np.isfinite(x).all():
+        place = int(np.argmin(np.isfinite(x)))
+        msg = f"values must be one row of finite numbers, and number {place} is {x[place]}"
+        raise InputError(msg)
+    return x
 
 
 def _inefficiency(x: Floats) -> float:

@@ -64,14 +64,11 @@ class Estimate:
         if float(f"{self.error:.0e}") < 2 * 10.0**power:  # a 1 alone would be half as good
             power -= 1
         digits = round(self.error / 10.0**power)
-        if (
-            power <= 0
-            and max(abs(self.value), self.error) < 1e6
-            and (self.value == 0 or abs(self.value) >= 1e-4)
-        ):
-            return f"{self.value:.{-power}f}({digits})"
-        scale = math.floor(math.log10(max(abs(self.value), self.error)))
-        return f"{self.value / 10.0**scale:.{max(0, scale - power)}f}({digits})e{scale:+03d}"
+        size = max(abs(self.value), self.error)
+        if power <= 0 and 1e-4 <= size < 1e6:
+            return f"{_plain(self.value, -power)}({digits})"
+        scale = math.floor(math.log10(size))
+        return f"{_plain(self.value / 10.0**scale, max(0, scale - power))}({digits})e{scale:+03d}"
 
     def __repr__(self) -> str:
         many = "" if math.isnan(self.n_independent) else f", {self.n_independent:.0f} independent"
@@ -89,3 +86,8 @@ class Estimate:
         if not spec:
             return str(self)
         return f"{self.value:{spec}} ± {self.error:{spec}}"
+
+
+def _plain(value: float, decimals: int) -> str:
+    """The number with so many decimals, and no minus in front of nothing but zeros."""
+    return f"{round(value, decimals) + 0.0:.{decimals}f}"

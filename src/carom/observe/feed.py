@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from carom import mechanics
 from carom.errors import InputError
 from carom.observe.batch import Batch, Moment
 from carom.observe.observable import Observable
@@ -15,6 +16,8 @@ from carom.state import EVENT, State
 #: Events in a batch: enough that NumPy's calls cost little, few enough for the cache. Cut at
 #: this fixed number, sums round the same whatever the machine's speed.
 BATCH = 8192
+#: Radii that spheres move between two samples, at least.
+LEAST = 1e-6
 
 
 class Cutter:
@@ -133,10 +136,23 @@ def _check_or_begin(observable: Observable, moment: Moment) -> None:
     if observable.seen is None:
         observable.begun = moment.time
         observable.begin(moment)
+        _check_pace(observable, moment)
     elif observable.world is not moment.world or not _same(observable.seen, moment.state):
         msg = (
             f"this {observable.name} has measured up to time {observable.seen.time:.6g}, and since "
             "then the simulation ran or was changed without it; take a new one"
+        )
+        raise InputError(msg)
+
+
+def _check_pace(observable: Observable, moment: Moment) -> None:
+    """Refuse to look so often that time would never get anywhere."""
+    again = math.inf if observable.schedule is None else observable.schedule.again
+    least = LEAST * mechanics.crossing_time(moment.state, moment.world)
+    if again < least:
+        msg = (
+            f"{observable.name} would look at the spheres each {again:g}, and no run would get "
+            f"far; let it look at most once in {least:.2g}, in which spheres move 1e-6 radii"
         )
         raise InputError(msg)
 

@@ -16,6 +16,7 @@ from carom.observe.table import Table, Theory
 from carom.state import Floats
 
 BINS, MEANS = 50, 8.0  #: the distribution goes up to eight means, in fifty bins
+FIRST = 1000  #: flights that wait until their mean is known, and with it the width of the bins
 EACH, FEWEST = 16, 64  #: each sixteenth sphere is followed, but 64 at least
 #: How much larger errors are than those of independent flights, as measured over many runs: two
 #: flights end at once, and a fast sphere stays fast for a while.
@@ -50,8 +51,9 @@ class FreeTime(Observable):
         self._followed[free[:: max(1, min(EACH, len(free) // FEWEST))]] = True
         self._since = np.full(n, moment.time)
         self._met = np.zeros(n, np.bool_)  # whether its flight began with an event
-        self._counts: NDArray[np.int64] | None = None
-        self._width = math.nan
+        self._counts = np.zeros(BINS + 1, np.int64)
+        self._width = math.nan  # of the bins, when it is known
+        self._early: list[Floats] = []  # flights until then
         self._ends = Rates()  # ends of flights
         self._gone = Rates()  # what flights that ended came to
         self._fluid, self._said = fluid_of(moment)
@@ -74,9 +76,11 @@ class FreeTime(Observable):
         met = np.ones(len(key), np.bool_)
         met[first] = self._met[sphere[first]]
         self._met[sphere] = True
-        self._count(gone[met])
         self._gone.add(batch, np.bincount(event, gone, n).astype(np.float64))
         self._ends.add(batch, np.bincount(event, minlength=n).astype(np.float64))
+        self._count(gone[met])
+        if math.isnan(self._width) and sum(map(len, self._early)) >= FIRST:
+            self._width = self._bin(self._mean_until(batch.end))
 
     def _lengths(
         self,
@@ -94,20 +98,30 @@ class FreeTime(Observable):
         self._since[sphere] = end  # of several the last one stays
         return end - start
 
-    def _under_way(self) -> float:
-        """What the flights under way came to so far."""
-        return float((self.last().time - self._since)[self._followed].sum())
+    def _under_way(self, time: float) -> float:
+        """What the flights under way came to until a time."""
+        return float((time - self._since)[self._followed].sum())
+
+    def _mean_until(self, time: float) -> float:
+        """All that was flown over the number of ends: those that ended are the short ones."""
+        flown = float(self._gone.total[1]) + self._under_way(time)
+        return flown / float(self._ends.total[1])
+
+    @staticmethod
+    def _bin(mean: float) -> float:
+        return MEANS / BINS * mean if mean > 0 else 1.0
 
     def _count(self, gone: Floats) -> None:
-        if len(gone) == 0:
-            return
-        if self._counts is None:
-            self._counts = np.zeros(BINS + 1, np.int64)
-            self._width = MEANS / BINS * float(gone.mean())
-            if not self._width > 0:
-                self._width = 1.0
-        place = np.minimum(gone * (1 / self._width), BINS).astype(np.int64)
-        self._counts += np.bincount(place, minlength=BINS + 1)
+        self._early.append(gone)
+        if not math.isnan(self._width):
+            self._counts += self._sorted(self._width)
+            self._early = []
+
+    def _sorted(self, width: float) -> NDArray[np.int64]:
+        """How many of the flights that wait are in each bin; the last takes all that are longer."""
+        gone = np.concatenate(self._early) if self._early else np.zeros(0)
+        place = np.minimum(gone * (1 / width), BINS).astype(np.int64)
+        return np.bincount(place, minlength=BINS + 1)
 
     def mean(self) -> Estimate:
         """Mean over the flights: all that was flown, over the number of ends."""
@@ -116,7 +130,7 @@ class FreeTime(Observable):
         if ends == 0:
             msg = f"{self.name} has seen no collision in {self.duration:.6g}; run longer"
             raise InputError(msg)
-        value = (float(self._gone.total[1]) + self._under_way()) / ends
+        value = self._mean_until(self.last().time)
         rate = self._ends.rate()
         return Estimate(value, value * rate.error / rate.value, rate.n_independent, rate.note)
 
@@ -132,19 +146,21 @@ class FreeTime(Observable):
     def result(self) -> Table:
         """The distribution so far."""
         mean, expected = self.mean(), self.theory()
-        if self._counts is None:
+        width = self._bin(mean.value) if math.isnan(self._width) else self._width
+        counts = self._counts + self._sorted(width)
+        if not counts.any():
             msg = f"{self.name} has seen no sphere collide twice in {self.duration:.6g}; run longer"
             raise InputError(msg)
-        edges = self._width * np.arange(BINS + 1, dtype=np.float64)
+        edges = width * np.arange(BINS + 1, dtype=np.float64)
         x = (edges[1:] + edges[:-1]) / 2
         # Of flights of length x there is room for T - x within the time T.
         room = np.maximum(1 - self._as_time(x) / self.duration, 0)
         with np.errstate(divide="ignore", invalid="ignore"):
-            per = 1 / (float(self._ends.total[1]) * self._width * room)
-            density, error = self._counts[:-1] * per, poisson(self._counts[:-1]) * (TOGETHER * per)
+            per = 1 / (float(self._ends.total[1]) * width * room)
+            density, error = counts[:-1] * per, poisson(counts[:-1]) * (TOGETHER * per)
         line, said = np.full(BINS, math.nan), ""
         if self._fluid is not None:
-            line = np.diff(self._below(edges, self._mean(self._fluid))) / self._width
+            line = np.diff(self._below(edges, self._mean(self._fluid))) / width
             said = f", theory {self._mean(self._fluid):.6g}"
         return Table(
             f"{self._title}: mean {mean}{said}",
@@ -211,16 +227,16 @@ class FreePath(FreeTime):
         self._speed[sphere] = after
         return time * before
 
-    def _under_way(self) -> float:
-        flown = (self.last().time - self._since) * self._speed
+    def _under_way(self, time: float) -> float:
+        flown = (time - self._since) * self._speed
         return float(flown[self._followed].sum())
 
     def _mean(self, fluid: Fluid) -> float:
         return float(theory.mean_free_path(fluid.packing_fraction, fluid.radius))
 
     def _as_time(self, x: Floats) -> Floats:
-        mean_speed = float(self._gone.total[1] + self._under_way()) / self.duration
-        return x * (np.count_nonzero(self._followed) / mean_speed)
+        flown = float(self._gone.total[1]) + self._under_way(self.last().time)
+        return x * (np.count_nonzero(self._followed) * self.duration / flown)
 
     def _below(self, x: Floats, mean: float) -> Floats:
         below: Floats = theory.free_path_cdf(x, mean)

@@ -13,6 +13,7 @@ from carom.observe.estimate import Estimate
 from carom.observe.observable import Observable
 from carom.observe.sampled import Sampled
 from carom.observe.series import Rates, Series
+from carom.state import readonly
 
 
 class OfState(Sampled):
@@ -27,7 +28,7 @@ class OfState(Sampled):
 
     def sample(self, moment: Moment) -> None:
         """Ask the function."""
-        value = number(f"what {self.name} returns", type(self).function(moment.state))
+        value = number(f"what {self.name} returns", type(self).function(readonly(moment.state)))
         self._series.add(np.array([[value]]))
 
     def result(self) -> Estimate:
@@ -53,6 +54,9 @@ class OfEvents(Observable):
                 f"{self.name} returned an array of shape {values.shape} for {len(batch)} events; "
                 "return one number for each"
             )
+            raise InputError(msg)
+        if values.dtype.kind not in "biuf" or not np.isfinite(values).all():
+            msg = f"{self.name} returned what is no finite number for some events: {values!r:.60}"
             raise InputError(msg)
         self._rates.add(batch, values.astype(np.float64))
 

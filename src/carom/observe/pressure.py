@@ -104,7 +104,8 @@ class PressureTensor(Observable):
         P_ab V = <sum m v_a v_b> + sum sigma n_a J_b / t
 
     The first part is looked at after each three mean free times, about the motion of the whole; the
-    second adds all collisions between. Result: `Table` with the six components.
+    second adds all collisions between. Theory is Z n kT, less kT/V, as N spheres at rest together
+    lack the motion of one. Result: `Table` with the six components.
 
     Parameters
     ----------
@@ -136,8 +137,8 @@ class PressureTensor(Observable):
         self._theory: Theory | None = None
         if conserves_energy(world):
             z = _fluid_z(state, world)
-            ideal = len(state) * mechanics.temperature(state, world) / self._volume
-            self._theory = Theory(z.value * ideal, z.label)
+            one = mechanics.temperature(state, world) / self._volume
+            self._theory = Theory((len(state) * z.value - 1) * one, z.label)
 
     def events(self, batch: Batch) -> None:
         """Add sigma n_a J_b of each collision, n = J/|J|."""

@@ -7,22 +7,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom import mechanics, theory
-from carom.checks import number
 from carom.errors import InputError
 from carom.observe.batch import Moment
 from carom.observe.estimate import Estimate
 from carom.observe.fluid import FREEZES, UP_TO, in_range, is_gas
 from carom.observe.kinds import MOST_KINDS, Kinds, labels, legend, letters, refuse_walls
-from carom.observe.sampled import Sampled
+from carom.observe.sampled import Reaching
 from carom.observe.series import poisson
 from carom.observe.table import Table, Theory
 from carom.state import Floats, State
 
+WIDTH = 0.02  #: of a bin, in mean diameters
 CENTRES = 500  #: spheres around which one sample counts the others
 NEAR = 0.2  #: diameters beyond contact from which the contact value is extrapolated
 
 
-class RDF(Sampled):
+class RDF(Reaching):
     """Radial distribution g(r): spheres at a distance, over those that chance would put there.
 
     In a periodic box, over all spheres alike, in column `g`, and where there are several kinds
@@ -34,7 +34,8 @@ class RDF(Sampled):
     Parameters
     ----------
     reach : float, optional
-        Largest distance; three mean diameters if left out, or half the shortest side.
+        Largest distance; three mean diameters if left out, or half the shortest side. The last
+        0.02 diameters that it cuts are left away.
     every, at
         As of `Sampled`, but a hundred mean free times if left out: counting pairs takes long.
 
@@ -43,14 +44,6 @@ class RDF(Sampled):
     M. P. Allen, D. J. Tildesley, Computer Simulation of Liquids, 2nd ed., Oxford 2017,
     section 8.2.
     """
-
-    apart = 100.0
-
-    def __init__(
-        self, reach: float | None = None, every: float | None = None, *, at: object = None
-    ) -> None:
-        super().__init__(every, at=at)
-        self._asked = None if reach is None else number("reach", reach, above=0)
 
     def begin(self, moment: Moment) -> None:
         """Refuse what has no mean density."""
@@ -62,7 +55,9 @@ class RDF(Sampled):
         if self._reach > half:
             msg = f"reach is {self._reach:g}, more than half the shortest side, {half:.6g}"
             raise InputError(msg)
-        self._bins = max(1, round(self._reach / (0.02 * diameter)))
+        # Of whole bins: one of them begins where spheres of the mean diameter touch.
+        self._bins = max(1, math.floor(self._reach / (WIDTH * diameter) + 1e-9))
+        self._reach = self._bins * WIDTH * diameter
         self._contact = 2 * float(state.radius.min()) if world.collide else 0.0
         if self._contact >= self._reach or len(state) < 2:
             msg = f"{self.name} reaches to {self._reach:.6g}, where no two spheres can be"
@@ -116,7 +111,7 @@ class RDF(Sampled):
         """g(r) so far."""
         self.over_samples()
         edges = np.linspace(0, self._reach, self._bins + 1)
-        first = int(np.searchsorted(edges, self._contact, "right")) - 1
+        first = int(np.searchsorted(edges, self._contact * (1 + 1e-9), "right")) - 1
         every_kind = list(range(len(self._kinds)))
         columns = {"distance": ((edges[1:] + edges[:-1]) / 2)[first:]}
         shown = {"g": (every_kind, every_kind)}
@@ -173,7 +168,7 @@ class RDF(Sampled):
         for _, a, b in self._of_kinds():
             sigma = float(self._kinds.radius[a] + self._kinds.radius[b])
             g, error = self._g([a], [b])
-            near = (edges[:-1] >= sigma) & (edges[1:] <= sigma * (1 + NEAR)) & (g > 0)
+            near = (edges[:-1] >= sigma * (1 - 1e-9)) & (edges[1:] <= sigma * (1 + NEAR)) & (g > 0)
             value = _extrapolated(middle[near] - sigma, g[near], error[near])
             line = Theory(float(self._theory[0][a, b]), self._theory[1]) if self._theory else None
             rows[f"{names[a]} with {names[b]}"] = (value, line)

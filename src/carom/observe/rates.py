@@ -100,9 +100,10 @@ class CollisionRate(Observable):
 
 
 class CollisionsPerSphere(Observable):
-    """How many collisions each sphere had, with walls too. Result: `Table` of the distribution.
+    """How many collisions each sphere had, with walls too.
 
     It reads the spheres' own counters where measuring begins and ends, and so costs nothing.
+    Result: `Table` of the distribution.
     """
 
     def begin(self, moment: Moment) -> None:

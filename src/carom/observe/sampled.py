@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from carom.checks import number
 from carom.errors import InputError
 from carom.observe.batch import Moment
 from carom.observe.kinds import mean_free_time
@@ -34,6 +35,25 @@ class Sampled(Observable):
         """Choose the times."""
         scale = mean_free_time(moment.state, moment.world)
         self.schedule = self._fixed or every(self.apart * scale)
+
+
+class Reaching(Sampled):
+    """Base of those that look up to some distance or wave number; as that takes long, rarely.
+
+    Parameters
+    ----------
+    reach : float, optional
+    every, at
+        As of `Sampled`, but a hundred mean free times if left out.
+    """
+
+    apart = 100.0
+
+    def __init__(
+        self, reach: float | None = None, every: float | None = None, *, at: Any = None
+    ) -> None:
+        super().__init__(every, at=at)
+        self._asked = None if reach is None else number("reach", reach, above=0)
 
 
 def schedule(interval: float | None, at: Any) -> Schedule | None:

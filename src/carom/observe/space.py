@@ -18,6 +18,7 @@ from carom.state import Floats, State
 from carom.world import PLANE, World
 
 POINTS = 50  #: in a layer, for the mean of a theory over it
+MOST_BINS = 1000  #: of more, the sums of a run would fill the memory
 _FLOOR = theory.about(theory.barometric_density).ranges["floor_packing_fraction"]
 THIN = f"up to packing fraction {_FLOOR.high} at the floor"
 CROWDED = f"none, the barometric formula holds {THIN}"
@@ -43,7 +44,7 @@ class _Profile(Sampled):
             msg = f"axis is {axis!r}; it is 'x', 'y' or 'z'"
             raise InputError(msg)
         self._axis = "xyz".index(axis)
-        self._bins = int(number("bins", bins, at_least=2))
+        self._bins = int(number("bins", bins, at_least=2, at_most=MOST_BINS))
 
     def begin(self, moment: Moment) -> None:
         """Find the ends of the axis and the area across it."""

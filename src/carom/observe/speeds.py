@@ -8,7 +8,7 @@ import numpy as np
 from carom import mechanics, theory
 from carom.errors import InputError
 from carom.observe.batch import Moment
-from carom.observe.kinds import conserves_energy, one_kind, unmoved
+from carom.observe.kinds import Kinds, conserves_energy, one_kind, unmoved
 from carom.observe.sampled import Sampled
 from carom.observe.series import poisson
 from carom.observe.table import Table
@@ -48,6 +48,16 @@ class ChiSquare(NamedTuple):
         return cls(value, freedom, math.erfc(z / math.sqrt(2)) / 2)
 
 
+def _moving(moment: Moment, name: str) -> tuple[Kinds, float]:
+    """The only kind of spheres, and their temperature; refused where there is none."""
+    kinds = one_kind(moment.state, name)
+    kT = mechanics.temperature(moment.state, moment.world)
+    if not kT > 0:
+        msg = f"{name} needs spheres that move against one another; give them velocities"
+        raise InputError(msg)
+    return kinds, kT
+
+
 class SpeedDistribution(Sampled):
     """Distribution of speeds about the motion of the whole, against the law it should follow.
 
@@ -69,11 +79,7 @@ class SpeedDistribution(Sampled):
         """Choose the bins."""
         super().begin(moment)
         state, world = moment.state, moment.world
-        kinds = one_kind(state, self.name)
-        kT = mechanics.temperature(state, world)
-        if not kT > 0:
-            msg = f"{self.name} needs spheres that move against one another; give them velocities"
-            raise InputError(msg)
+        kinds, kT = _moving(moment, self.name)
         self._free = ~state.fixed
         mass, n = float(kinds.mass[0]), int(kinds.count[0])
         thermal = math.sqrt(kT / mass)
@@ -150,11 +156,7 @@ class HFunction(Sampled):
         """Choose the bins, and look."""
         super().begin(moment)
         state, world = moment.state, moment.world
-        kinds = one_kind(state, self.name)
-        kT = mechanics.temperature(state, world)
-        if not kT > 0:
-            msg = f"{self.name} needs spheres that move against one another; give them velocities"
-            raise InputError(msg)
+        kinds, kT = _moving(moment, self.name)
         self._free = ~state.fixed
         thermal = math.sqrt(kT / kinds.mass[0])
         self._width = 4.8 * thermal / self._bins

@@ -6,12 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from carom import theory
-from carom.checks import number
 from carom.observe.batch import Moment
 from carom.observe.blocking import FEWEST_BLOCKS
 from carom.observe.fluid import UP_TO, fluid_of
 from carom.observe.kinds import refuse_walls
-from carom.observe.sampled import Sampled
+from carom.observe.sampled import Reaching
 from carom.observe.table import Table
 from carom.state import Floats
 
@@ -21,7 +20,7 @@ VECTORS = 16  #: in a shell at most; -k says the same as k and is left out
 AT_ONCE = 2**15  #: phases that are held at once, few enough for the cache
 
 
-class StructureFactor(Sampled):
+class StructureFactor(Reaching):
     """Structure factor S(k) = <|sum exp(i k.r)|^2>/N of a periodic box, over all spheres alike.
 
     k are wave vectors that the box allows, 2 pi (a/L_x, b/L_y, c/L_z), averaged over shells of
@@ -42,14 +41,6 @@ class StructureFactor(Sampled):
     J.-P. Hansen, I. R. McDonald, Theory of Simple Liquids, 4th ed., Academic Press 2013,
     section 4.1.
     """
-
-    apart = 100.0
-
-    def __init__(
-        self, reach: float | None = None, every: float | None = None, *, at: object = None
-    ) -> None:
-        super().__init__(every, at=at)
-        self._asked = None if reach is None else number("reach", reach, above=0)
 
     def begin(self, moment: Moment) -> None:
         """Choose the wave vectors."""

@@ -62,7 +62,7 @@ def chosen(patterns: str | None) -> list[Check]:
             if fnmatchcase(check.family, pattern) or fnmatchcase(check.name, pattern)
         ]
         if not some:
-            names = [*FAMILIES, *(check.name for check in everything)]
+            names = dict.fromkeys([*FAMILIES, *(check.name for check in everything)])
             msg = f"there is no family or check {pattern!r}{nearest(pattern, names)}"
             raise UnknownNameError(msg)
         wanted.update(some)
