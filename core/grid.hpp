@@ -168,6 +168,10 @@ public:
         return at;
     }
 
+    static bool upwards(const Vec3& v, int axis) {
+        return (axis == 0 ? v.x : axis == 1 ? v.y : v.z) > 0;
+    }
+
     GridBlock around(Cell at) const {
         GridBlock b;
         fill(b.x, at.c[0], 0, 1);
@@ -188,6 +192,7 @@ public:
         return b;
     }
 
+    void fetch_cell(Cell at) const { fetch(&cells_[size_t(number_of(at))]); }
     void fetch_block(const GridBlock& b) const {
         for (int z = 0; z < b.z.n; ++z)
             for (int y = 0; y < b.y.n; ++y) {

@@ -317,7 +317,7 @@ void Engine::change_cell(int i) {
     const Motion at = motion(i, now_);
     const Grid::Cell old = Grid::unpack(e.cell);
     const int axis = Grid::axis(e.cell);
-    const bool up = (axis == 0 ? at.v.x : axis == 1 ? at.v.y : at.v.z) > 0;
+    const bool up = Grid::upwards(at.v, axis);
     const Grid::Cell cell = grid_.next(old, axis, up);
     grid_.remove(i, old);
     grid_.add(i, cell);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSpherical = 4.18879020478639098;  // 4 pi / 3
 constexpr double kDilute = 0.3;            // packing fraction up to which a grid is faster,
-constexpr double kDiluteAndFar = 0.2;      // and where spheres come from memory
+constexpr double kDiluteAndFar = 0.18;     // and where spheres come from memory
 constexpr double kPerCell = 0.8;           // spheres in a cell of it
 constexpr size_t kMany = size_t(1) << 22;  // so many take too much memory in lists
 
