@@ -82,7 +82,8 @@ public:
 
     // Every j with |centre - centre_j| < reach + reach_j (nearest image) or a hair more, none
     // twice: i itself only if it is in the cells while it searches. The answer is the same from
-    // both sides. `shell_of` is asked only where far places share a cell.
+    // both sides. `shell_of` is asked only where far places share a cell, or cells are
+    // much wider than the shell.
     template <class ShellOf>
     void search(const Shell& s, const ShellOf& shell_of, Found& out) const {
         out.n = 0;
@@ -272,7 +273,8 @@ private:
         fill(block.z, z, u.z, l.steps[2], x.n * y.n);
         const size_t before = out.n;
         near(l, block, out);
-        if (!l.folded) return;
+        // On a level of much larger spheres steps are coarse, and those who are there are few.
+        if (!l.folded && reach > 32) return;
         size_t kept = before;
         for (size_t k = before; k < out.n; ++k) {
             const int32_t j = out.id[k];
