@@ -125,7 +125,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
     names = list(known)
     # Dashes and underscores, capitals and small letters are what people mix up most.
     plain = {n.lower().replace("_", "-"): n for n in names}
-    close = difflib.get_close_matches(name.lower().replace("_", "-"), plain, 1, 0.5)
+    close = difflib.get_close_matches(name.lower().replace("_", "-"), plain, 1, 0.6)
     if close:
         return f"; did you mean {plain[close[0]]!r}?"
     return f"; there are {', '.join(names)}" if names else "; there are none"

@@ -199,6 +199,9 @@ class Frame:
         return mechanics.packing_fraction(self.state, self.world)
 
 
+MOST_MOMENTS = 1e8  #: stops of one run; more would take for ever
+
+
 def moments(
     begin: float, *, every: float | None, at: Iterable[float] | None, until: float | None
 ) -> Iterator[float]:
@@ -216,7 +219,14 @@ def moments(
     end = None if until is None else number("until", until)
     if at is not None:
         return _given(at, end)
-    return _regular(begin, number("every", every, above=0), end)
+    step = number("every", every, above=0)
+    if end is not None and (end - begin) / step > MOST_MOMENTS:
+        msg = (
+            f"every={step:g} makes {(end - begin) / step:.1e} frames until {end:g}, and at most "
+            f"{MOST_MOMENTS:.0e} can be looked at: take at least {(end - begin) / MOST_MOMENTS:.2g}"
+        )
+        raise InputError(msg)
+    return _regular(begin, step, end)
 
 
 def _regular(begin: float, every: float, end: float | None) -> Iterator[float]:

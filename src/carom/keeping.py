@@ -32,7 +32,7 @@ class Keeping(Running):
         Parameters
         ----------
         path : str or Path
-            ``.parquet`` (needs ``pip install carom[analysis]``) or ``.npz``.
+            ``.parquet`` (needs ``pip install "carom[analysis]"``) or ``.npz``.
         overwrite : bool
             Replace a file that is there.
 

@@ -76,7 +76,7 @@ def render(
     """Write a picture (``.png``), a film (``.mp4``, ``.gif``) or a replay (``.html``).
 
     What is seen is what the live view shows, drawn without a browser. Films need
-    ``pip install carom[video]``. Ctrl-C, or a run that cannot go on, leaves a film of what was
+    ``pip install "carom[video]"``. Ctrl-C, or a run that cannot go on, leaves a film of what was
     drawn so far. A replay is a page to look around in: of the options below only times, speed,
     fps and color matter to it.
 

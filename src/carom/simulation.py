@@ -334,7 +334,7 @@ class Simulation(Showing):
         return html_table(title or "Simulation", rows) + html_picture(self._repr_png_())
 
     def view(self, *, color: str | None = None, height: int = 480) -> Any:
-        """Show it live in a notebook's cell; needs ``pip install carom[notebook]``.
+        """Show it live in a notebook's cell; needs ``pip install "carom[notebook]"``.
 
         The page's buttons and sliders act on this simulation. While a cell runs the view waits,
         and afterwards shows what the cell has done.

@@ -157,5 +157,7 @@ class TestSteinhardt:
         with pytest.raises(carom.InputError, match="where no sphere is at a border"):
             look(box, observe.Steinhardt(at=[0]))
         monkeypatch.setitem(sys.modules, "freud", None)
-        with pytest.raises(carom.InputError, match=r"needs freud: pip install carom\[analysis\]$"):
+        with pytest.raises(
+            carom.InputError, match=r"needs freud: pip install .carom\[analysis\].$"
+        ):
             observe.Steinhardt()

@@ -351,14 +351,16 @@ class TestBadInput:
     @pytest.mark.parametrize("call", [gas().record_events, carom.load_events])
     def test_without_pyarrow(self, call, tmp_path, monkeypatch):
         monkeypatch.setitem(sys.modules, "pyarrow", None)
-        with pytest.raises(carom.InputError, match=r"needs pyarrow: pip install carom\[analysis\]"):
+        with pytest.raises(
+            carom.InputError, match=r"needs pyarrow: pip install .carom\[analysis\]"
+        ):
             call(tmp_path / "events.parquet")
 
     def test_without_pandas(self, tmp_path, monkeypatch):
         with gas() as sim:
             sim.record_events(tmp_path / "events.npz")
         monkeypatch.setitem(sys.modules, "pandas", None)
-        with pytest.raises(carom.InputError, match=r"needs pandas: pip install carom\[analysis\]"):
+        with pytest.raises(carom.InputError, match=r"needs pandas: pip install .carom\[analysis\]"):
             carom.load_events(tmp_path / "events.npz").to_pandas()
 
     def test_a_disk_that_is_full(self, tmp_path, monkeypatch):

@@ -96,6 +96,10 @@ def test_frames_go_on_from_now_without_end_and_see_changes_between_them():
         ({}, "exactly one of them"),
         ({"every": 1, "at": [1]}, "exactly one of them"),
         ({"every": 0}, "every is 0; it must be more than 0"),
+        (
+            {"every": 1e-300, "until": 1},
+            r"every=1e-300 makes 1.0e\+300 frames until 1, and at most",
+        ),
         ({"every": 1, "until": math.nan}, "until is nan"),
         ({"at": [1, 0.5]}, "rising times, but 0.5 comes after 1"),
         ({"at": [math.inf]}, "a time of at is inf"),

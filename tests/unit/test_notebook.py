@@ -186,7 +186,7 @@ def test_without_anywidget_a_sentence_says_what_to_install(sim, monkeypatch):
 
     notebook._widget_class.cache_clear()
     monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(InputError, match=r"pip install carom\[notebook\]"):
+    with pytest.raises(InputError, match=r"pip install .carom\[notebook\]"):
         sim.view()
 
 

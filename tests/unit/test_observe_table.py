@@ -124,8 +124,8 @@ def test_a_picture(table):
 @pytest.mark.parametrize(
     ("module", "action", "message"),
     [
-        ("pandas", "to_pandas", r"to_pandas\(\) needs pandas: pip install carom\[analysis\]"),
-        ("matplotlib", "plot", r"plot\(\) needs matplotlib: pip install carom\[plot\]"),
+        ("pandas", "to_pandas", r"to_pandas\(\) needs pandas: pip install .carom\[analysis\]"),
+        ("matplotlib", "plot", r"plot\(\) needs matplotlib: pip install .carom\[plot\]"),
     ],
 )
 def test_what_is_not_installed_is_named(table, monkeypatch, module, action, message):

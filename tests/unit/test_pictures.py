@@ -333,6 +333,6 @@ def test_nothing_to_show():
 def test_without_pillow_words_are_refused_and_pictures_are_not(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "PIL", None)
     sim = carom.Simulation(carom.scenes.gas(n=20))
-    with pytest.raises(InputError, match=r"need Pillow: pip install carom\[video\]"):
+    with pytest.raises(InputError, match=r"need Pillow: pip install .carom\[video\]"):
         sim.picture(size=SIZE)
     assert sim.picture(size=SIZE, caption=False).pixels.shape == (136, 240, 3)

@@ -177,7 +177,7 @@ def test_event_files_are_those_that_record_events_writes(path, tmp_path, ending,
 def test_h5py_is_asked_for_where_it_is_missing(path, tmp_path, monkeypatch):
     run = record(path, scenes.two_balls())
     monkeypatch.setitem(__import__("sys").modules, "h5py", None)
-    with pytest.raises(InputError, match=r"needs h5py: pip install carom\[analysis\]"):
+    with pytest.raises(InputError, match=r"needs h5py: pip install .carom\[analysis\]"):
         convert(run, tmp_path / "run.h5")
 
 
@@ -188,3 +188,18 @@ def test_unknown_formats_and_places_that_cannot_be_written(path, tmp_path):
     for name in ("run.xyz", "run.h5"):
         with pytest.raises(FileError, match="cannot write"):
             convert(run, tmp_path / "nowhere" / name)
+
+
+@pytest.mark.parametrize("name", ["run.xyz", "run.h5", "run.npz"])
+def test_what_is_stopped_leaves_what_was_there_before(path, tmp_path, name):
+    run = record(path, scenes.gas(n=20, seed=1))
+    target = tmp_path / name
+    target.write_text("before")
+
+    def stop(done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        convert(run, target, stop)
+    assert target.read_text() == "before"
+    assert {file.name for file in tmp_path.iterdir()} == {path.name, name}

@@ -295,6 +295,7 @@ def test_a_recording_says_how_it_came_to_be(path):
     ("options", "message"),
     [
         ({"every": 0}, "every is 0; it must be more than 0"),
+        ({"every": 1e-9}, "no sphere moves a millionth of its radius; take at least"),
         ({"every": 0.1, "checkpoint_every": 0.25}, "give a multiple of that"),
         ({"every": 0.1, "checkpoint_every": 0.01}, "give a multiple of that"),
     ],
@@ -400,3 +401,12 @@ def test_times_outside_are_refused(path):
         run[len(run)]
     assert repr(run).endswith("run.gsd, 21 frames, time 0 to 1>")
     assert [f.time for f in run.frames(at=[0.5, 7.0])] == [0.5]
+
+
+def test_a_slice_is_a_list_of_frames(path):
+    with carom.Simulation(scenes.gas(n=20, seed=1)) as sim:
+        sim.record(path, every=0.25)
+        sim.run(until=2)
+    run = carom.load(path)
+    assert [frame.time for frame in run[1::3]] == [0.25, 1.0, 1.75]
+    assert [frame.time for frame in run[-2:]] == [1.75, 2.0]

@@ -241,7 +241,7 @@ def test_no_spheres(tmp_path):
 @pytest.mark.parametrize(("module", "name"), [("av", "a.mp4"), ("PIL", "a.gif"), ("PIL", "a.mp4")])
 def test_missing_libraries_are_named(tmp_path, monkeypatch, module, name):
     monkeypatch.setitem(__import__("sys").modules, module, None)
-    with pytest.raises(InputError, match=r"pip install carom\[video\]"):
+    with pytest.raises(InputError, match=r"pip install .carom\[video\]"):
         carom.render(gas(), tmp_path / name, until=1, **SMALL)
     assert not list(tmp_path.iterdir())
 

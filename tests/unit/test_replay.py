@@ -1,11 +1,13 @@
 """Replays: what their files hold, how exactly, how many bytes, and what is refused."""
 
 import base64
+import errno
 import hashlib
 import html
 import re
 import zlib
 from html.parser import HTMLParser
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -265,6 +267,20 @@ def test_a_place_that_cannot_be_written(tmp_path):
     sim = carom.Simulation(scenes.build("two-balls"))
     with pytest.raises(FileError, match="cannot be written"):
         write_replay(sim, tmp_path / "no" / "a.html", [0, 1])
+
+
+def test_a_full_disk_leaves_the_page_that_was_there(tmp_path, monkeypatch):
+    def half(path, text, **options):
+        path.write_bytes(text[:1000].encode())
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    page = tmp_path / "a.html"
+    page.write_text("before")
+    monkeypatch.setattr(Path, "write_text", half)
+    sim = carom.Simulation(scenes.build("two-balls"))
+    with pytest.raises(FileError, match=r"a\.html cannot be written: No space left on device"):
+        write_replay(sim, page, [0, 1])
+    assert [(file.name, file.read_text()) for file in tmp_path.iterdir()] == [("a.html", "before")]
 
 
 def test_progress_tells_every_frame(tmp_path):

@@ -253,6 +253,9 @@ def run(
         events=counted(events),
     )
     if resume is None:
+        if tick is not None and method != "tick":
+            msg = f"--tick is {tick}, but method {method} has no ticks; add --method tick"
+            raise InputError(msg)
         sim = found.simulation(method, parsed("tick", tick))
         plan.begin(sim)
     start = sim.state

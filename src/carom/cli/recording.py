@@ -112,7 +112,7 @@ def check(recording: RecordingName, json: Json = False, quiet: Quiet = False) ->
         verdict = checked(recording, progress)
     if json:
         report.write_json({**vars(verdict), "good": verdict.good})
-    else:
+    elif verdict.frames or verdict.good:
         report.output().print(_sentence(verdict), soft_wrap=True)
     for sentence in [] if json else [*verdict.damage, *verdict.differences]:
         report.complain(sentence)

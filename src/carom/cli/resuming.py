@@ -80,6 +80,9 @@ class Plan:
 
     def begin(self, sim: Simulation) -> None:
         """Let a simulation be recorded, if that is wanted."""
+        if self.output is not None and self.output.suffix.lower() != ".gsd":
+            msg = f"a recording is a .gsd file; name it {self.output}.gsd instead of {self.output}"
+            raise InputError(msg)
         for path in (self.events, self.output):
             if path is not None and path.exists() and not self.force:
                 resume = f", or --resume {path} to go on with it" if path == self.output else ""

@@ -33,7 +33,7 @@ def pyarrow(path: Path) -> Any:
         import pyarrow
         import pyarrow.parquet
     except ImportError as error:
-        msg = f"{path.name} needs pyarrow: pip install carom[analysis]; a name in .npz does without"
+        msg = '.parquet needs pyarrow: pip install "carom[analysis]"; a name in .npz does without'
         raise InputError(msg) from error
     return pyarrow
 

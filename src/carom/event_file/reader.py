@@ -124,7 +124,7 @@ class Events:
         try:
             import pandas
         except ImportError as error:
-            msg = "to_pandas() needs pandas: pip install carom[analysis]"
+            msg = 'to_pandas() needs pandas: pip install "carom[analysis]"'
             raise InputError(msg) from error
         columns: dict[str, Any] = dict(layout.columns(self.between(start, until)))
         columns["kind"] = pandas.Categorical.from_codes(columns["kind"], list(KINDS))

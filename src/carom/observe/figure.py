@@ -19,7 +19,7 @@ def draw(table: "Table", axes: Any = None) -> Any:
         try:
             from matplotlib import pyplot
         except ImportError as missing:
-            msg = "plot() needs matplotlib: pip install carom[plot]"
+            msg = 'plot() needs matplotlib: pip install "carom[plot]"'
             raise InputError(msg) from missing
         axes = pyplot.figure(layout="constrained").add_subplot()
     along, x = next(iter(table.columns.items()))

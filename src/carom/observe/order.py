@@ -38,7 +38,7 @@ class Steinhardt(Sampled):
     ==============================  ========  ========
 
     Result: `Table` of the distributions of q4 and q6; `means` are those of q_l and Q_l. Errors are
-    by blocking over the samples. Needs freud: ``pip install carom[analysis]``.
+    by blocking over the samples. Needs freud: ``pip install "carom[analysis]"``.
 
     Parameters
     ----------
@@ -127,6 +127,6 @@ def _freud() -> Any:
     try:
         import freud
     except ImportError as error:
-        msg = "Steinhardt needs freud: pip install carom[analysis]"
+        msg = 'Steinhardt needs freud: pip install "carom[analysis]"'
         raise InputError(msg) from error
     return freud

@@ -157,7 +157,7 @@ class Table:
         try:
             import pandas
         except ImportError as error:
-            msg = "to_pandas() needs pandas: pip install carom[analysis]"
+            msg = 'to_pandas() needs pandas: pip install "carom[analysis]"'
             raise InputError(msg) from error
         frame = pandas.DataFrame({name: np.asarray(c) for name, c in self.columns.items()})
         frame.attrs.update(self._about())

@@ -31,7 +31,7 @@ def pillow() -> tuple[ModuleType, ModuleType, ModuleType]:
         from PIL import Image, ImageDraw, ImageFont
     except ImportError as missing:
         msg = (
-            "words in pictures, and GIF files, need Pillow: pip install carom[video], "
+            'words in pictures, and GIF files, need Pillow: pip install "carom[video]", '
             "or leave the words out with caption=False (--no-caption)"
         )
         raise InputError(msg) from missing

@@ -33,7 +33,7 @@ def pyav() -> ModuleType:
     try:
         import av
     except ImportError as missing:
-        msg = "films need PyAV and Pillow: pip install carom[video]"
+        msg = 'films need PyAV and Pillow: pip install "carom[video]"'
         raise InputError(msg) from missing
     return av
 

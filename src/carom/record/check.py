@@ -102,7 +102,7 @@ def _replayed(run: Recording, progress: Progress) -> Verdict:
         except InputError as error:
             differences.append(str(error))
         begin = end
-    return Verdict(total, events, [], differences)
+    return Verdict(len(run), events, [], differences)
 
 
 def _follow(run: Recording, begin: int, end: int) -> Iterator[tuple[int, int]]:

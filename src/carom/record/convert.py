@@ -44,13 +44,17 @@ def convert(run: Recording, path: str | Path, progress: Progress | None = None) 
     if write is None:
         msg = f"{target} has no known ending{nearest(target.suffix, FORMATS)}"
         raise UnknownNameError(msg)
+    part = target.with_stem(f"{target.stem}.part")  # no file is cut short, or lost for a bad one
     try:
-        write(run, target, progress or (lambda done, total: None))
+        write(run, part, progress or (lambda done, total: None))
+        part.replace(target)
     except FileError:
         raise
     except OSError as error:
         msg = f"cannot write {target}: {error.strerror or error}"
         raise FileError(msg) from error
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def _counted(run: Recording, progress: Progress) -> Iterator[Frame]:
@@ -93,7 +97,7 @@ def _h5md(run: Recording, path: Path, progress: Progress) -> None:
     try:
         import h5py
     except ImportError as error:
-        msg = f"{path.name} needs h5py: pip install carom[analysis]; a name in .xyz does without"
+        msg = '.h5 needs h5py: pip install "carom[analysis]"; a name in .xyz does without'
         raise InputError(msg) from error
     counts = {len(frame) for frame in run}
     if len(counts) > 1:

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,8 +93,17 @@ class Recording:
     def __len__(self) -> int:
         return len(self._places)
 
-    def __getitem__(self, index: int) -> Frame:
-        """Frame `index`, as it was to the bit; negative ones count from the end."""
+    @overload
+    def __getitem__(self, index: int) -> Frame: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Frame]: ...
+    def __getitem__(self, index: int | slice) -> Frame | list[Frame]:
+        """Frame `index`, as it was to the bit; negative ones count from the end.
+
+        A slice gives a list of frames, all in memory.
+        """
+        if isinstance(index, slice):
+            return [self._frame(place) for place in self._places[index]]
         return self._frame(self._places[operator.index(index)])
 
     def __iter__(self) -> Iterator[Frame]:
@@ -110,7 +119,7 @@ class Recording:
         return f"<Recording: {self.path}, {len(self)} frames, time {self.start:g} to {self.end:g}>"
 
     def view(self, *, color: str | None = None, height: int = 480) -> Any:
-        """Play it in a notebook's cell; needs ``pip install carom[notebook]``.
+        """Play it in a notebook's cell; needs ``pip install "carom[notebook]"``.
 
         The widget holds a replay, so it plays without a kernel too.
 

@@ -25,7 +25,7 @@ from carom.view.wire import MAX_CREDITS
 
 HEIGHT = 480  #: pixels
 LOWEST, HIGHEST = 200, 4000
-MISSING = "view() needs anywidget: pip install carom[notebook]"
+MISSING = 'view() needs anywidget: pip install "carom[notebook]"'
 
 Send = Callable[[dict[str, str], list[bytes]], None]
 

@@ -120,11 +120,15 @@ def write_replay(
         msg = f"a replay is a web page, so its name ends in .html; {path.name!r} does not"
         raise InputError(msg)
     text = replay(source, times, color=color, title=title, speed=speed, progress=progress)
+    part = path.with_name(f"{path.name}.part")  # no half file, whatever happens
     try:
-        path.write_text(text, encoding="utf-8", newline="\n")
+        part.write_text(text, encoding="utf-8", newline="\n")
+        part.replace(path)
     except OSError as error:
         msg = f"{path} cannot be written: {error.strerror or error}"
         raise FileError(msg) from error
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def even_times(run: Recorded) -> Floats:
