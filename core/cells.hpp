@@ -82,8 +82,8 @@ public:
 
     // Every j with |centre - centre_j| < reach + reach_j (nearest image) or a hair more, none
     // twice: i itself only if it is in the cells while it searches. The answer is the same from
-    // both sides. `shell_of` is asked only where far places share a cell, or cells are
-    // much wider than the shell.
+    // both sides, but for that hair. `shell_of` is asked only where far places share a cell, or
+    // cells are much wider than the shell.
     template <class ShellOf>
     void search(const Shell& s, const ShellOf& shell_of, Found& out) const {
         out.n = 0;

@@ -130,7 +130,7 @@ def test_a_recording_is_not_lost_by_a_second_run(cli):
         ("run gas --force", 2, "name the file too, as in -o run.gsd"),
         ("run gas -o x.gsd --every 0", 2, "every is 0; it must be more than 0"),
         ("run gas -o x.gsd --every 1 --checkpoint-every 1.5", 2, "give a multiple of that"),
-        ("run gas -o x.gsd --every 1e-300", 2, "no sphere moves a millionth of its radius"),
+        ("run gas -o x.gsd --every 1e-300", 2, "spheres do not move a millionth of their radius"),
         ("run gas -o x.txt", 2, "a recording is a .gsd file; name it x.txt.gsd"),
         ("run gas --tick 0.1", 2, "--tick is 0.1, but method exact has no ticks"),
         ("run gas -o no/x.gsd", 1, "cannot write no/x.gsd"),

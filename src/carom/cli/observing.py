@@ -34,11 +34,11 @@ def observables(names: str | None, what: str = "--observe") -> dict[str, Observa
     for name in [] if names is None else names.split(","):
         plain = name.strip().lower().replace("_", "-")
         if plain not in OBSERVABLES:
-            names = f"{what} takes names with commas between them: {', '.join(OBSERVABLES)}"
+            known = f"{what} takes names with commas between them: {', '.join(OBSERVABLES)}"
             if not plain:
-                raise UnknownNameError(names)
+                raise UnknownNameError(known)
             close = nearest(plain, OBSERVABLES)
-            hint = close if close.startswith("; did") else f"; {names}"
+            hint = close if close.startswith("; did") else f"; {known}"
             msg = f"there is no observable {plain!r}{hint}"
             raise UnknownNameError(msg)
         if plain in found:

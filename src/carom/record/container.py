@@ -130,9 +130,8 @@ class Container:
     def commit(self) -> None:
         """Bring all frames that have ended to the disk, and then into the index."""
         self._sync()
-        while (
-            self._torn_end > self._listed
-        ):  # the last first, so there is never a gap before others
+        # What is left of a torn frame, the last first: so there is never a gap before others.
+        while self._torn_end > self._listed:
             self._torn_end -= 1
             self._write(self._entry_place(self._torn_end), bytes(ENTRY.itemsize))
         entries = np.array(self._ready, ENTRY)

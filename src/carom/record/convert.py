@@ -48,8 +48,8 @@ def convert(run: Recording, path: str | Path, progress: Progress | None = None) 
     try:
         write(run, part, progress or (lambda done, total: None))
         part.replace(target)
-    except FileError:
-        raise
+    except FileError as error:  # of the events' writer, which knows the other name only
+        raise FileError(str(error).replace(str(part), str(target))) from error
     except OSError as error:
         msg = f"cannot write {target}: {error.strerror or error}"
         raise FileError(msg) from error

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from carom import mechanics
 from carom.checks import number
 from carom.errors import InputError
 from carom.frame import Frame
@@ -17,14 +18,14 @@ from carom.record import hoomd, layout
 from carom.record.recording import Recording
 from carom.record.writer import Writer
 from carom.scene import Scene
-from carom.state import EVENT, State
+from carom.state import EVENT
 
 FRAMES_PER_SECOND = 30  #: at the scene's pace, where nothing else is asked for
 CHECKPOINT_FRAMES = 10  #: frames from one checkpoint to the next, likewise
 #: Likewise, after so many frames another must be worth its room: as many events as spheres must
 #: have happened since the one before, and so many at least.
 FILM_FRAMES, WORTH_A_FRAME = 300, 100
-SHORTEST = 1e-6  #: time between frames, in units of `crossing_time`: files would have no end
+SHORTEST = 1e-6  #: time between frames, in units of the crossing time: files would have no end
 #: Events in a chunk, 10 MB. They go to the file when so many are there, so memory is bounded.
 MOST_EVENTS = 2**18
 
@@ -247,12 +248,6 @@ def times_of(every: Any, checkpoint_every: Any, pace: float) -> Times:
     return Times(step, round(frames), thin=False)
 
 
-def crossing_time(state: State) -> float:
-    """In which the smallest sphere would move by its radius at the rms speed; 0 if all rest."""
-    speed = math.sqrt(float(np.mean(np.square(state.velocity)))) if len(state) else 0.0
-    return float(state.radius.min()) / speed if speed > 0 else 0.0
-
-
 def record(
     motion: Motion,
     path: str | Path,
@@ -273,11 +268,11 @@ def record(
     """
     target = Path(path)
     times = times_of(every, checkpoint_every, 1.0 if scene is None else scene.pace)
-    least = SHORTEST * crossing_time(motion.state)
-    if times.every < least:
+    least = SHORTEST * mechanics.crossing_time(motion.state, motion.world)
+    if times.every < least and motion.state.velocity.any():  # at rest there is no such scale
         msg = (
-            f"every={times.every:g} is too short: in that time no sphere moves a millionth of its "
-            f"radius; take at least {least:.2g} (the recording knows all moments between frames)"
+            f"every={times.every:g} is too short: in that time spheres do not move a millionth of "
+            f"their radius; take at least {least:.2g} (a recording knows all moments between frames)"
         )
         raise InputError(msg)
     if target.exists() and not overwrite:
