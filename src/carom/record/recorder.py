@@ -272,7 +272,7 @@ def record(
     if times.every < least and motion.state.velocity.any():  # at rest there is no such scale
         msg = (
             f"every={times.every:g} is too short: in that time spheres do not move a millionth of "
-            f"their radius; take at least {least:.2g} (a recording knows all moments between frames)"
+            f"their radius; take at least {least:.2g} (a recording knows all moments between)"
         )
         raise InputError(msg)
     if target.exists() and not overwrite:
