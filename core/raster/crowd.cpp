@@ -89,25 +89,44 @@ void Crowd::sweep(int axis, bool forward, float share) {
     }
 }
 
-float Crowd::left(const Vec3& place) const {
-    const double x[3] = {place.x, place.y, place.z};
-    int cell[3];
-    float far[3];
-    for (int k = 0; k < 3; ++k) {
-        const double at = (x[k] - low_[k]) * per_[k] - 0.5;
-        const double inside = std::clamp(at, 0.0, cells_[k] - 1.001);
-        cell[k] = int(inside);
-        far[k] = float(inside - cell[k]);
-    }
+// Eight places in one go: both ends of each axis, and twice the middle.
+CAROM_WIDE Crowd::Light Crowd::about(F3 center, float far, const View& view) const {
+    constexpr float side[3][kLanes] = {
+        {-1, 1, 0, 0, 0, 0, 0, 0}, {0, 0, -1, 1, 0, 0, 0, 0}, {0, 0, 0, 0, -1, 1, 0, 0}};
+    const Vec3 place = view.eye + view.right * double(center.x) + view.up * double(center.y) +
+                       view.forward * double(center.z);
+    const float x[3] = {float(place.x), float(place.y), float(place.z)};
     const int row = cells_[0], layer = cells_[0] * cells_[1];
-    const float* const light = &light_[size_t(cell[2]) * layer + cell[1] * row + cell[0]];
-    const auto along = [&](const float* at) { return at[0] + (at[1] - at[0]) * far[0]; };
-    const auto across = [&](const float* at) {
-        const float near_row = along(at);
-        return near_row + (along(at + row) - near_row) * far[1];
-    };
-    const float near_layer = across(light);
-    return near_layer + (across(light + layer) - near_layer) * far[2];
+    const int stride[3] = {1, row, layer};
+    int first[kLanes] = {};
+    float beyond[3][kLanes], left[kLanes];
+    for (int k = 0; k < 3; ++k) {
+        const float per = float(per_[k]), step = far * per;
+        const float middle = (x[k] - float(low_[k])) * per - 0.5f;
+        const float most = float(cells_[k]) - 1.001f;
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const float at = clamp(middle + side[k][lane] * step, 0, most);
+            const int cell = int(at);
+            first[lane] += cell * stride[k];
+            beyond[k][lane] = at - float(cell);
+        }
+    }
+    const float* const light = light_.data();
+    for (int lane = 0; lane < kLanes; ++lane) {
+        const auto along = [&](int at) {
+            return light[at] + (light[at + 1] - light[at]) * beyond[0][lane];
+        };
+        const auto across = [&](int at) {
+            const float near_row = along(at);
+            return near_row + (along(at + row) - near_row) * beyond[1][lane];
+        };
+        const float near_layer = across(first[lane]);
+        left[lane] =
+            near_layer + (across(first[lane] + layer) - near_layer) * beyond[2][lane];
+    }
+    return {left[7], view.direction({0.5 * double(left[1] - left[0]),
+                                     0.5 * double(left[3] - left[2]),
+                                     0.5 * double(left[5] - left[4])})};
 }
 
 }  // namespace carom::raster

@@ -17,8 +17,13 @@ public:
     // With the first n spheres.
     void fill(const std::vector<Vec3>& position, const std::vector<double>& radius, size_t n);
 
-    // 0 to 1, between the cells in proportion.
-    float left(const Vec3& place) const;
+    // How much is left at a place, 0 to 1, between the cells in proportion; and half of what it
+    // changes from `far` before to `far` behind it, along each axis. Both in the eye's space.
+    struct Light {
+        float left;
+        F3 slope;
+    };
+    Light about(F3 center, float far, const View& view) const;
 
 private:
     void spread(const std::vector<Vec3>& position, const std::vector<double>& radius, size_t n);

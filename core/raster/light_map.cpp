@@ -6,56 +6,83 @@ namespace {
 constexpr int kLeast = 32, kMost = 1024;  // places along a side
 }
 
-LightMap::LightMap(float side_u, float side_v, float finest) : side_u_(side_u), side_v_(side_v) {
-    const float wanted = 1.25f * std::max(side_u, side_v) / std::max(finest, 1e-30f);
+void LightMap::begin(float side_u, float side_v, float finest) {
+    wanted_ = 1.25f * std::max(side_u, side_v) / 1.41f;
+    count_ = 0;
     for (int n = kLeast; n <= kMost; n *= 2) {
-        levels_.push_back({n, true, std::vector<float>(size_t(n) * n)});
-        if (1.41f * float(n) >= wanted) break;
+        if (count_ == int(levels_.size())) levels_.emplace_back();
+        Level& level = levels_[count_++];
+        level.n = n, level.used = false;
+        level.step_u = side_u / float(n), level.step_v = side_v / float(n);
+        level.per_u = float(n) / side_u, level.per_v = float(n) / side_v;
+        if (float(n) * finest >= wanted_) break;
     }
-    clear();
 }
 
-void LightMap::clear() {
-    for (Level& level : levels_) {
-        if (level.used) std::fill(level.light.begin(), level.light.end(), 1.0f);
-        level.used = false;
-    }
+void LightMap::begin(Level& level) {
+    if (level.used) return;
+    level.light.assign(size_t(level.n) * level.n, 1.0f);
+    level.used = true;
 }
 
 LightMap::Level& LightMap::level_for(float scale) {
-    size_t k = 0;
-    while (k + 1 < levels_.size() &&
-           1.41f * float(levels_[k].n) * scale < 1.25f * std::max(side_u_, side_v_))
-        ++k;
-    levels_[k].used = true;
+    int k = 0;
+    while (k + 1 < count_ && float(levels_[k].n) * scale < wanted_) ++k;
+    begin(levels_[k]);
     return levels_[k];
 }
 
+namespace {
+
+// Multiplies a row by what a coarser map says there. near_row, far_row: of that map, at a quarter
+// and three quarters of its places from the row's middle.
+CAROM_WIDE void refine(const float* __restrict near_row, const float* __restrict far_row, int n,
+                       float* __restrict between, float* __restrict to) {
+    for (int i = 0; i < n; ++i) between[i + 1] = 0.75f * near_row[i] + 0.25f * far_row[i];
+    between[0] = between[1], between[n + 1] = between[n];
+    for (int i = 0; i < n; ++i) {
+        const float here = 0.75f * between[i + 1];
+        to[2 * i] *= here + 0.25f * between[i];
+        to[2 * i + 1] *= here + 0.25f * between[i + 2];
+    }
+}
+
+// All spots and most of the lamp's light, as a row of pairs.
+CAROM_WIDE void pair_up(const float* __restrict lamp, const float* __restrict spots, int n,
+                        float shade, int* __restrict row, uint32_t* __restrict pairs) {
+    for (int i = 0; i < n; ++i)
+        row[i] = int(65535 * spots[i] * (1 - shade * (1 - lamp[i])) + 0.5f);
+    row[n] = row[n - 1];
+    for (int i = 0; i < n; ++i) pairs[i] = uint32_t(row[i]) | uint32_t(row[i + 1]) << 16;
+}
+
+}  // namespace
+
 void LightMap::merge() {
-    for (size_t k = 0; k + 1 < levels_.size(); ++k) {
+    std::vector<float> between(size_t(kMost) + 2);
+    for (int k = 0; k + 1 < count_; ++k) {
         const Level& coarse = levels_[k];
         Level& fine = levels_[k + 1];
         if (!coarse.used) continue;
-        fine.used = true;
-        std::vector<float> between(coarse.n);
+        begin(fine);
         for (int j = 0; j < fine.n; ++j) {
             // The middle of a fine place lies at a quarter or three quarters between coarse ones.
             const auto row = [&](int at) {
                 return &coarse.light[size_t(std::clamp(at, 0, coarse.n - 1)) * coarse.n];
             };
-            const float* const near_row = row(j / 2);
-            const float* const far_row = row(j / 2 + (j % 2 ? 1 : -1));
-            for (int i = 0; i < coarse.n; ++i)
-                between[i] = 0.75f * near_row[i] + 0.25f * far_row[i];
-            float* const to = &fine.light[size_t(j) * fine.n];
-            for (int i = 0; i < coarse.n; ++i) {
-                const float left = between[i > 0 ? i - 1 : 0];
-                const float right = between[i + 1 < coarse.n ? i + 1 : i];
-                to[2 * i] *= 0.75f * between[i] + 0.25f * left;
-                to[2 * i + 1] *= 0.75f * between[i] + 0.25f * right;
-            }
+            refine(row(j / 2), row(j / 2 + (j % 2 ? 1 : -1)), coarse.n, between.data(),
+                   &fine.light[size_t(j) * fine.n]);
         }
     }
+    begin(levels_[count_ - 1]);
+}
+
+void WallLight::set(const LightMap& lamp, const LightMap& spots, float shade) {
+    n_ = lamp.places();
+    pairs_.resize(size_t(n_) * n_);
+    std::vector<int> row(size_t(n_) + 1);
+    for (size_t at = 0; at < pairs_.size(); at += n_)
+        pair_up(&lamp.finest()[at], &spots.finest()[at], n_, shade, row.data(), &pairs_[at]);
 }
 
 }  // namespace carom::raster

@@ -104,19 +104,11 @@ struct Room {
     std::vector<double> shells;  // radii of spherical walls about the origin
 };
 
-// A sphere as it is drawn.
-struct Ball {
-    F3 center;
-    float radius = 1;
-    F3 skin;         // squared colour: the share of light it gives back
-    float left = 1;  // light left for it in the crowd
-    F3 left_slope;   // and its change per unit of the normal
-    F3 color;
-};
-
 // First and last pixel that something covers; empty if first > last.
 struct Span {
     int first = 0, last = -1;
+
+    bool empty() const { return first > last; }
 };
 inline Span span(double from, double to, int size) {
     if (!(from < size) || !(to >= 0)) return {};
@@ -125,19 +117,46 @@ inline Span span(double from, double to, int size) {
 inline Span common(Span a, Span b) {
     return {a.first > b.first ? a.first : b.first, a.last < b.last ? a.last : b.last};
 }
+inline Span together(Span a, Span b) {
+    if (a.empty() || b.empty()) return a.empty() ? b : a;
+    return {a.first < b.first ? a.first : b.first, a.last > b.last ? a.last : b.last};
+}
 
-// Some rows of a picture: three numbers per pixel, from 0 to 1.
+struct Bounds {
+    Span x, y;
+};
+
+// A sphere as it is drawn: two of them in a line of memory, because they are met in any order.
+struct alignas(32) Ball {
+    F3 center;
+    float radius = 1;
+    Bounds samples;  // among which it is looked for
+};
+// And what is asked for where it is seen.
+struct alignas(32) Skin {
+    F3 color;
+    bool asked = false;  // for the light left for it in the crowd:
+    float left = 1;
+    F3 slope;  // its change per unit of the normal
+};
+
+constexpr int kLanes = 8;  // pixels and the like to a step of a loop
+inline int whole_steps(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
+
+// A part of a picture: three numbers per pixel, from 0 to 1. Rows have a few pixels more than the
+// picture, so that loops may end with a whole step.
 struct Frame {
-    int width = 0;
-    Span rows;
+    Span columns, rows;
+    int stride = 0;
     std::vector<float> rgb;
 
-    void resize(int w, Span which) {
-        width = w, rows = which;
-        rgb.resize(size_t(3) * w * (which.last - which.first + 1));
+    void resize(int width, Span which) {
+        columns = {0, width - 1}, rows = which;
+        stride = whole_steps(width);
+        rgb.resize(size_t(3) * stride * (which.last - which.first + 1));
     }
-    float* row(int j) { return &rgb[size_t(3) * width * (j - rows.first)]; }
-    const float* row(int j) const { return &rgb[size_t(3) * width * (j - rows.first)]; }
+    float* row(int j) { return &rgb[size_t(3) * stride * (j - rows.first)]; }
+    const float* row(int j) const { return &rgb[size_t(3) * stride * (j - rows.first)]; }
 };
 
 inline void blend(float* pixel, F3 color, float alpha) {
@@ -146,9 +165,6 @@ inline void blend(float* pixel, F3 color, float alpha) {
     pixel[2] += (color.z - pixel[2]) * alpha;
 }
 
-struct Bounds {
-    Span x, y;
-};
 // The pixels around a sphere's outline; everything where it reaches beside or behind the eye.
 Bounds around(const View& view, F3 center, float radius, float more);
 

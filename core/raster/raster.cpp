@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "../memory.hpp"
 #include "wire.hpp"
 
 namespace carom::raster {
@@ -10,13 +11,12 @@ namespace {
 
 // Bytes of the rows that are drawn at once: they stay in the processor's cache then.
 constexpr int kBand = 1 << 20;
+// Spheres ahead of the one that is drawn, whose lines of memory are asked for.
+constexpr int kAhead = 6;
 
 // Parts from 0 to 1 as levels from 0 to 255.
-CAROM_WIDE void levels(const std::vector<float>& rgb, uint8_t* bytes) {
-    const float* __restrict const from = rgb.data();
-    uint8_t* __restrict const to = bytes;
-    const size_t n = rgb.size();
-    for (size_t k = 0; k < n; ++k) to[k] = uint8_t(int(clamp(from[k]) * 255 + 0.5f));
+CAROM_WIDE void levels(const float* __restrict from, int n, uint8_t* __restrict to) {
+    for (int k = 0; k < n; ++k) to[k] = uint8_t(int(clamp(from[k]) * 255 + 0.5f));
 }
 
 }  // namespace
@@ -27,6 +27,7 @@ Raster::Raster(const View& view, const Look& look, Room room)
     const int per_row = view.width * (12 + 8 * view.samples * view.samples);
     band_ = std::clamp(kBand / per_row, 4, view.height > 4 ? view.height : 4);
     still_.resize(view.width, {0, view.height - 1});
+    frame_.resize(view.width, {0, band_ - 1});
     for (size_t k = 0; k < still_.rgb.size(); k += 3) {
         still_.rgb[k] = look.back.x;
         still_.rgb[k + 1] = look.back.y;
@@ -37,6 +38,9 @@ Raster::Raster(const View& view, const Look& look, Room room)
         walls_.back().paint(still_);
     }
     for (const double radius : room_.shells) draw_shell(view, look, radius, Half::far, still_);
+    std::vector<uint8_t> bytes(size_t(3) * view.width * view.height);
+    for (int band = 0; band * band_ < view.height; ++band) paint(band, bytes.data());
+    empty_ = std::move(bytes);
 }
 
 void Raster::place(const std::vector<Vec3>& position, const std::vector<double>& radius,
@@ -46,87 +50,115 @@ void Raster::place(const std::vector<Vec3>& position, const std::vector<double>&
     for (int i = 0; i < n; ++i)
         order_[i] = {float(norm2(position[i] - view_.eye) - radius[i] * radius[i]), i};
     if (!look_.wire) std::sort(order_.begin(), order_.end());  // wires keep their own order
-    balls_.resize(n);
+    balls_.resize(n), skins_.resize(n);
     for (int k = 0; k < n; ++k) {
         const int i = order_[k].second;
         const auto part = [&](int shift) { return float(color[i] >> shift & 255) / 255; };
         Ball& ball = balls_[k];
-        ball = {view_.place(position[i]),    float(radius[i]), {}, 1, {},
-                {part(16), part(8), part(0)}};
-        ball.skin = ball.color * ball.color;
+        ball.center = view_.place(position[i]);
+        ball.radius = float(radius[i]);
+        ball.samples = seen_.bounds(ball.center, ball.radius);
+        skins_[k] = {};
+        skins_[k].color = {part(16), part(8), part(0)};
     }
+}
+
+Span Raster::rows_of(int band) const {
+    return {band * band_, std::min((band + 1) * band_, view_.height) - 1};
 }
 
 // Spheres by the bands of rows in which they may be seen, from near to far in each.
 void Raster::sort_into_bands() {
     const int bands = (view_.height + band_ - 1) / band_;
     starts_.assign(bands + 1, 0);
+    columns_.assign(bands, {});
     const auto each = [&](auto&& use) {
         for (size_t k = 0; k < balls_.size(); ++k) {
-            const Span rows = seen_.rows(balls_[k].center, balls_[k].radius);
-            if (rows.first > rows.last) continue;
-            for (int band = rows.first / band_; band <= rows.last / band_; ++band)
-                use(band, int(k));
+            const Span rows = balls_[k].samples.y;
+            if (rows.empty()) continue;
+            const int per = view_.samples * band_;
+            for (int band = rows.first / per; band <= rows.last / per; ++band) use(band, int(k));
         }
     };
-    each([&](int band, int) { ++starts_[band + 1]; });
-    for (int band = 0; band < bands; ++band) starts_[band + 1] += starts_[band];
+    each([&](int band, int k) {
+        ++starts_[band + 1];
+        columns_[band] = together(columns_[band], balls_[k].samples.x);
+    });
+    for (int band = 0; band < bands; ++band) {
+        starts_[band + 1] += starts_[band];
+        columns_[band] = columns_[band].empty() ? Span{} : Span{columns_[band].first / view_.samples, columns_[band].last / view_.samples};
+    }
     inside_.resize(starts_.back());
     std::vector<int> next(starts_.begin(), starts_.end() - 1);
     each([&](int band, int k) { inside_[next[band]++] = k; });
 }
 
-// Light left for a sphere, of the lamp and in the crowd; asked once, when it is first seen.
-void Raster::shade(int k, const Vec3& x, double radius) {
-    if (shaded_[k]) return;
-    shaded_[k] = 1;
-    if (look_.shadows) casters_.ask(k, balls_, look_);
-    if (!crowd_) return;
+// Light left for a sphere in the crowd; asked once, when it is first seen.
+void Raster::shade(int k) {
+    Skin& skin = skins_[k];
+    if (!crowd_ || skin.asked) return;
+    skin.asked = true;
     // On the surface it is looked up a little outside: in proportion between both ends.
-    const double far = 1.8 * radius;
-    const auto slope = [&](const Vec3& step) {
-        return 0.5 * double(crowd_->left(x + step) - crowd_->left(x - step));
-    };
-    balls_[k].left = crowd_->left(x);
-    balls_[k].left_slope =
-        view_.direction({slope({far, 0, 0}), slope({0, far, 0}), slope({0, 0, far})});
+    const Crowd::Light light = crowd_->about(balls_[k].center, 1.8f * balls_[k].radius, view_);
+    skin.left = light.left, skin.slope = light.slope;
 }
 
 // Takes away what lies behind spheres, of pixels that are painted part by part.
 void Raster::uncover() {
     if (view_.samples == 1) return;
-    std::vector<uint8_t> open(view_.width), whole(view_.width);
+    const Span columns = frame_.columns;
+    const int n = columns.last - columns.first + 1;
+    std::vector<uint8_t> open(n), whole(n);
     for (int row = frame_.rows.first; row <= frame_.rows.last; ++row) {
-        seen_.open(row, open.data(), whole.data());
-        float* const pixels = frame_.row(row);
-        for (int i = 0; i < view_.width; ++i) {
+        seen_.open(row, columns, open.data(), whole.data());
+        float* const pixels = frame_.row(row) + 3 * columns.first;
+        for (int i = 0; i < n; ++i) {
             if (whole[i]) continue;
             for (int c = 0; c < 3; ++c) pixels[3 * i + c] *= 0.25f * float(open[i]);
         }
     }
 }
 
-void Raster::paint(int band, const std::vector<Vec3>& position, const std::vector<double>& radius) {
-    const Span rows{band * band_, std::min((band + 1) * band_, view_.height) - 1};
-    frame_.resize(view_.width, rows);
-    std::copy_n(still_.row(rows.first), frame_.rgb.size(), frame_.rgb.data());
-    seen_.begin(rows);
+// The columns of a band that differ from the picture without spheres.
+Span Raster::columns_of(int band) const {
+    if (look_.wire || empty_.empty()) return {0, view_.width - 1};
+    Span columns = columns_[band];
+    for (const Wall& wall : walls_)
+        if (!common(wall.darkened().y, rows_of(band)).empty())
+            columns = together(columns, wall.darkened().x);
+    return columns;
+}
+
+void Raster::paint(int band, uint8_t* bytes) {
+    frame_.rows = rows_of(band);
+    frame_.columns = columns_of(band);
+    if (frame_.columns.empty()) return;
+    const int from = 3 * frame_.columns.first, count = 3 * (frame_.columns.last + 1) - from;
+    for (int row = frame_.rows.first; row <= frame_.rows.last; ++row)
+        std::copy_n(still_.row(row) + from, count, frame_.row(row) + from);
+    seen_.begin(frame_.columns, frame_.rows);
     if (!look_.wire && !balls_.empty()) {
         visible_.clear();
-        for (int at = starts_[band]; at < starts_[band + 1]; ++at) {
+        const int end = starts_[band + 1];
+        for (int at = starts_[band]; at < end; ++at) {
             const int k = inside_[at];
-            if (!seen_.add(k, balls_[k].center, balls_[k].radius)) continue;
+            const int ahead = inside_[std::min(at + kAhead, end - 1)];
+            fetch(&balls_[ahead]), fetch(&skins_[ahead]);
+            if (!seen_.add(k, balls_[k])) continue;
             visible_.push_back(k);
-            shade(k, position[order_[k].second], radius[order_[k].second]);
+            shade(k);
         }
         for (const Wall& wall : walls_) wall.darken(seen_, frame_);
         uncover();
-        shading_.paint(seen_, visible_, balls_, casters_, frame_);
+        shading_.paint(seen_, visible_, balls_, skins_, casters_, frame_);
     }
     for (const Edge& edge : room_.edges) carom::raster::draw(view_, look_, edge, seen_, frame_);
     if (look_.wire)
-        for (const Ball& ball : balls_) draw_wires(view_, look_, ball, frame_);
+        for (size_t k = 0; k < balls_.size(); ++k)
+            draw_wires(view_, look_, balls_[k], skins_[k].color, frame_);
     for (const double shell : room_.shells) draw_shell(view_, look_, shell, Half::near, frame_);
+    for (int row = frame_.rows.first; row <= frame_.rows.last; ++row)
+        levels(frame_.row(row) + from, count, bytes + size_t(3) * view_.width * row + from);
 }
 
 void Raster::draw(const std::vector<Vec3>& position, const std::vector<double>& radius,
@@ -134,20 +166,17 @@ void Raster::draw(const std::vector<Vec3>& position, const std::vector<double>& 
     const std::lock_guard lock(busy_);
     place(position, radius, color);
     sort_into_bands();
-    shaded_.assign(balls_.size(), 0);
     crowd_.reset();
     casters_.clear();
     if (!look_.wire && !balls_.empty()) {
         if (look_.crowd_cell > 0)
             crowd_.emplace(look_.low, look_.high, look_.crowd_cell, look_.up)
                 .fill(position, radius, own);
-        if (look_.shadows) casters_.begin(balls_, look_, view_.direction(look_.lamp));
-        for (Wall& wall : walls_) wall.light(balls_);
+        if (look_.shadows) casters_.find(balls_, look_, view_.direction(look_.lamp));
+        for (Wall& wall : walls_) wall.light(balls_, shadows_, spots_);
     }
-    for (int band = 0; band * band_ < view_.height; ++band) {
-        paint(band, position, radius);
-        levels(frame_.rgb, bytes + size_t(3) * view_.width * frame_.rows.first);
-    }
+    std::copy(empty_.begin(), empty_.end(), bytes);
+    for (int band = 0; band * band_ < view_.height; ++band) paint(band, bytes);
 }
 
 }  // namespace carom::raster

@@ -29,26 +29,31 @@ private:
     void place(const std::vector<Vec3>& position, const std::vector<double>& radius,
                const std::vector<uint32_t>& color);
     void sort_into_bands();
-    void paint(int band, const std::vector<Vec3>& position, const std::vector<double>& radius);
-    void shade(int k, const Vec3& x, double radius);
+    Span rows_of(int band) const;
+    Span columns_of(int band) const;
+    void paint(int band, uint8_t* bytes);
+    void shade(int k);
     void uncover();
 
     View view_;
     Look look_;
     Room room_;
     std::vector<Wall> walls_;
+    LightMap shadows_, spots_;  // of the wall that is lit
     Shading shading_;
     Visibility seen_;
     Casters casters_;
     std::vector<std::pair<float, int>> order_;  // spheres by distance
     std::vector<Ball> balls_;                   // from near to far
+    std::vector<Skin> skins_;                   // of these
     int band_ = 1;                              // rows of pixels that are drawn at once
     std::vector<int> starts_, inside_;          // spheres by band
+    std::vector<Span> columns_;                 // of bands, that spheres may cover
     std::vector<int> visible_;                  // those of a band that are seen
-    std::vector<uint8_t> shaded_;               // have crowd and casters been asked?
     std::optional<Crowd> crowd_;
-    Frame still_;  // what lies behind all spheres
-    Frame frame_;  // a band of the picture
+    Frame still_;                 // what lies behind all spheres
+    Frame frame_;                 // a band of the picture
+    std::vector<uint8_t> empty_;  // the picture without spheres
     std::mutex busy_;
 };
 

@@ -1,12 +1,12 @@
 #include "shading.hpp"
 
-#include <algorithm>
+#include <bit>
 
 namespace carom::raster {
 
 namespace {
 
-constexpr int kBatch = 64, kLanes = 8;
+constexpr int kBatch = 64;
 
 // The samples of a pixel, as bits, that see a sphere: their share, and where their middle lies, in
 // quarters of a pixel to the right and up.
@@ -34,22 +34,11 @@ struct Parts {
     }
 };
 
-// Which samples of the pixels of a row see a sphere; whether any does.
-CAROM_WIDE bool find(const Visibility& seen, int samples, int ball, int row, int first, int n,
-                     uint8_t* __restrict bits) {
-    if (samples == 1) {
-        const int* const id = seen.ids(row) + first;
-        int any = 0;
-        for (int k = 0; k < n; ++k) any |= bits[k] = id[k] == ball;
-        return any;
-    }
-    const int* const upper = seen.ids(2 * row) + 2 * first;
-    const int* const lower = seen.ids(2 * row + 1) + 2 * first;
-    int any = 0;
-    for (int k = 0; k < n; ++k)
-        any |= bits[k] = uint8_t((upper[2 * k] == ball) + 2 * (upper[2 * k + 1] == ball) +
-                                 4 * (lower[2 * k] == ball) + 8 * (lower[2 * k + 1] == ball));
-    return any;
+// Which of kLanes samples see a ball, as bits.
+CAROM_INLINE unsigned which(const int* id, int ball) {
+    unsigned bits = 0;
+    for (int k = 0; k < kLanes; ++k) bits |= unsigned(id[k] == ball) << k;
+    return bits;
 }
 
 }  // namespace
@@ -73,50 +62,55 @@ Shading::Shading(const View& view, const Look& look)
 
 // Where all samples of a pixel see the same sphere, it is lit once, in the middle; elsewhere each
 // sphere is lit in the middle of its samples.
-void Shading::paint(const Visibility& seen, const std::vector<int>& visible,
-                    const std::vector<Ball>& balls, const Casters& casters, Frame& frame) const {
+CAROM_WIDE void Shading::paint(const Visibility& seen, const std::vector<int>& visible,
+                               const std::vector<Ball>& balls, const std::vector<Skin>& skins,
+                               const Casters& casters, Frame& frame) const {
     const int samples = view_.samples;
     const Parts parts(samples);
     const float quarter = 0.25f * float(view_.pixel);
-    std::vector<uint8_t> bits(view_.width);
     Batch batch;
     for (const int ball : visible) {
-        const Bounds bounds = seen.bounds(balls[ball].center, balls[ball].radius);
-        const int first = bounds.x.first / samples, n = bounds.x.last / samples - first + 1;
+        const Bounds& bounds = balls[ball].samples;
         const Span rows = common({bounds.y.first / samples, bounds.y.last / samples}, frame.rows);
         for (int row = rows.first; row <= rows.last; ++row) {
-            if (!find(seen, samples, ball, row, first, n, bits.data())) continue;
             const float y = view_.ray_y(float(row));
-            float* const pixels = frame.row(row) + 3 * first;
-            int at = batch.count;
-            for (int k = 0; k < n; ++k) {
-                // Without a choice: what is not seen is written over.
-                const Part& part = parts.of[bits[k]];
-                batch.pixel[at] = pixels + 3 * k;
+            float* const pixels = frame.row(row);
+            const auto add = [&](int i, unsigned bits) {
+                const Part& part = parts.of[bits];
+                const int at = batch.count++;
+                batch.pixel[at] = pixels + 3 * i;
                 batch.weight[at] = part.weight;
-                batch.x[at] = rays_[first + k] + part.aside * quarter;
+                batch.x[at] = rays_[i] + part.aside * quarter;
                 batch.y[at] = y + part.above * quarter;
-                at += bits[k] != 0;
-                if (at < kBatch) continue;
-                batch.count = at;
-                light(batch, balls, ball, casters);
-                at = 0;
+                if (batch.count == kBatch) light(batch, ball, balls[ball], skins[ball], casters);
+            };
+            const int *const upper = seen.ids(samples * row),
+                      *const lower = seen.ids(samples * row + samples - 1);
+            for (int k = bounds.x.first / kLanes * kLanes; k <= bounds.x.last; k += kLanes) {
+                unsigned one = which(upper + k, ball);
+                if (samples == 1) {
+                    for (; one; one &= one - 1) add(k + std::countr_zero(one), 1);
+                    continue;
+                }
+                const unsigned two = which(lower + k, ball);
+                unsigned either = one | two;
+                either = (either | either >> 1) & 0x55;  // a bit for each pixel
+                for (; either; either &= either - 1) {
+                    const int at = std::countr_zero(either);
+                    add((k + at) / 2, (one >> at & 3) | (two >> at & 3) << 2);
+                }
             }
-            batch.count = at;
         }
-        if (batch.count > 0) light(batch, balls, ball, casters);
+        if (batch.count > 0) light(batch, ball, balls[ball], skins[ball], casters);
     }
 }
 
-// Light creeps round the edge, where the sphere's own shadow would be hard; so places turned away
-// from the lamp ask nobody.
-CAROM_WIDE void Shading::shadow(Batch& b, const std::vector<Ball>& balls, int ball,
-                                const Casters& casters) const {
-    const float more = 0.12f * balls[ball].radius;
+// Places turned away from the lamp ask nobody.
+CAROM_WIDE void Shading::shadow(Batch& b, int ball, const Casters& casters) const {
     const int n = b.count;
-    for (const int* j = casters.begin(ball); j != casters.end(ball); ++j) {
-        const F3 c = balls[*j].center - lamp_ * more;
-        const float r = balls[*j].radius;
+    for (const Casters::Caster* j = casters.begin(ball); j != casters.end(ball); ++j) {
+        const F3 c = j->center;
+        const float r = j->radius;
         for (int k = 0; k < n; ++k) {
             const float dx = c.x - b.px[k], dy = c.y - b.py[k], dz = c.z - b.pz[k];
             const float gap = dx * lamp_.x + dy * lamp_.y + dz * lamp_.z;
@@ -127,15 +121,14 @@ CAROM_WIDE void Shading::shadow(Batch& b, const std::vector<Ball>& balls, int ba
     }
 }
 
-CAROM_WIDE void Shading::light(Batch& b, const std::vector<Ball>& balls, int who,
+CAROM_WIDE void Shading::light(Batch& b, int who, const Ball& ball, const Skin& skin,
                                const Casters& casters) const {
-    const Ball& ball = balls[who];
-    const F3 c = ball.center, slope = ball.left_slope;
+    const F3 c = ball.center, slope = skin.slope;
     const float r2 = ball.radius * ball.radius;
     const float left_of_lamp = casters.any() ? casters.left(who) : 1;
     const int used = b.count;
     // Whole vectors: what lies behind the last place is not looked at.
-    const int n = b.count = (used + kLanes - 1) / kLanes * kLanes;
+    const int n = b.count = whole_steps(used);
     for (int k = used; k < n; ++k) b.x[k] = b.x[0], b.y[k] = b.y[0];
     for (int k = 0; k < n; ++k) {
         const float x = b.x[k], y = b.y[k];
@@ -148,12 +141,12 @@ CAROM_WIDE void Shading::light(Batch& b, const std::vector<Ball>& balls, int who
         const float dx = b.px[k] - c.x, dy = b.py[k] - c.y, dz = t - c.z;
         const float per = 1 / std::sqrt(dx * dx + dy * dy + dz * dz);
         b.nx[k] = dx * per, b.ny[k] = dy * per, b.nz[k] = dz * per;
-        b.left[k] = clamp(ball.left + slope.x * b.nx[k] + slope.y * b.ny[k] + slope.z * b.nz[k]);
+        b.left[k] = clamp(skin.left + slope.x * b.nx[k] + slope.y * b.ny[k] + slope.z * b.nz[k]);
         b.seen[k] = left_of_lamp;
     }
-    if (casters.any()) shadow(b, balls, who, casters);
+    if (casters.any()) shadow(b, who, casters);
     const F3 key = look_.key, sky = look_.sky, ground = look_.ground, fog = look_.back;
-    const F3 skin = ball.skin;
+    const F3 own = skin.color * skin.color;  // the share of light that it gives back
     for (int k = 0; k < n; ++k) {
         const float x = b.x[k], y = b.y[k];
         const float ray = std::sqrt(1 + x * x + y * y), away = 1 / ray;
@@ -178,15 +171,15 @@ CAROM_WIDE void Shading::light(Batch& b, const std::vector<Ball>& balls, int who
         const float distance = b.pz[k] * ray;
         const float mist =
             look_.fog_most * clamp((distance - look_.fog_from) * look_.fog_per_length);
-        const auto lit = [&](float own, float k_, float s_, float g_, float f_) {
-            float glow = own * ((g_ + (s_ - g_) * high) * around + lamp * k_);
-            glow += shine * k_ + s_ * rim * (0.10f + 0.25f * own);
+        const auto lit = [&](float share, float k_, float s_, float g_, float f_) {
+            float glow = share * ((g_ + (s_ - g_) * high) * around + lamp * k_);
+            glow += shine * k_ + s_ * rim * (0.10f + 0.25f * share);
             const float shown = std::sqrt(glow / (1 + 0.12f * glow));
             return shown + (f_ - shown) * mist;
         };
-        b.red[k] = lit(skin.x, key.x, sky.x, ground.x, fog.x);
-        b.green[k] = lit(skin.y, key.y, sky.y, ground.y, fog.y);
-        b.blue[k] = lit(skin.z, key.z, sky.z, ground.z, fog.z);
+        b.red[k] = lit(own.x, key.x, sky.x, ground.x, fog.x);
+        b.green[k] = lit(own.y, key.y, sky.y, ground.y, fog.y);
+        b.blue[k] = lit(own.z, key.z, sky.z, ground.z, fog.z);
     }
     for (int k = 0; k < used; ++k) {
         float* const pixel = b.pixel[k];

@@ -12,14 +12,14 @@ public:
 
     // Paints what is seen of the spheres over what is in the frame. visible: those that are seen.
     void paint(const Visibility& seen, const std::vector<int>& visible,
-               const std::vector<Ball>& balls, const Casters& casters, Frame& frame) const;
+               const std::vector<Ball>& balls, const std::vector<Skin>& skins,
+               const Casters& casters, Frame& frame) const;
 
 private:
     struct Batch;
-    void light(Batch& batch, const std::vector<Ball>& balls, int ball,
+    void light(Batch& batch, int who, const Ball& ball, const Skin& skin,
                const Casters& casters) const;
-    void shadow(Batch& batch, const std::vector<Ball>& balls, int ball,
-                const Casters& casters) const;
+    void shadow(Batch& batch, int ball, const Casters& casters) const;
 
     View view_;
     Look look_;

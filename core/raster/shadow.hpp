@@ -2,7 +2,6 @@
 // found once per sphere, and each place on it then asks those few.
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "picture.hpp"
@@ -10,6 +9,7 @@
 namespace carom::raster {
 
 constexpr float kLamp = 0.075f;     // the lamp's radius over its distance: half-shadows widen so
+constexpr float kCreeps = 0.12f;    // radii that light creeps round an edge
 constexpr float kFaintest = 0.03f;  // shadows that hide less of the lamp are left out
 
 // Radius of the half-shadow at a distance behind what casts it.
@@ -41,15 +41,21 @@ struct HalfShadow {
 
 class Casters {
 public:
-    // lamp: unit vector towards it. Both know only balls about which `ask` has asked.
-    void begin(const std::vector<Ball>& balls, const Look& look, F3 lamp);
-    void ask(int ball, const std::vector<Ball>& balls, const Look& look);
+    // Who casts a shadow. The light creeps round a ball's edge, where its own shadow would be hard;
+    // so casters are farther from the lamp, by a share of the radius of the ball that they darken.
+    struct Caster {
+        F3 center;
+        float radius;
+    };
+
+    // Asks for all balls that may be in the picture. lamp: unit vector towards it.
+    void find(const std::vector<Ball>& balls, const Look& look, F3 lamp);
     void clear() { begin_.clear(); }
 
     bool any() const { return !begin_.empty(); }
-    // Those whose shadows change within a visible ball.
-    const int* begin(int ball) const { return &all_[0] + begin_[ball]; }
-    const int* end(int ball) const { return &all_[0] + end_[ball]; }
+    // Those whose shadows change within a ball.
+    const Caster* begin(int ball) const { return all_.data() + begin_[ball]; }
+    const Caster* end(int ball) const { return all_.data() + end_[ball]; }
     // What the others leave of the lamp, for the whole ball.
     float left(int ball) const { return left_[ball]; }
 
@@ -61,24 +67,25 @@ private:
         int low, high;
     };
     Cells touched(float at, float reach, int axis) const;
+    int slab(float height) const;
     void sort_into_cells(const std::vector<Ball>& balls, const Look& look);
-    float dimmed(int first, int last, const Place& p, const Look& look) const;
-    int reaching(int first, int last, const Place& p, float radius, const Look& look);
+    float dimmed(int first, int last, const Place& p, float far, const Look& look) const;
+    void collect(int first, int last, int ball, float far, const std::vector<Ball>& balls,
+                 const Look& look);
+    void ask(int ball, int cell, const std::vector<Ball>& balls, const Look& look);
+    int cell_of(const Place& p) const;
 
-    static constexpr int kLanes = 8;  // entries to a step of the loop
-
+    F3 lamp_;
     std::vector<Place> places_;
-    std::vector<std::pair<float, int>> order_;  // heights, upside down: from the lamp on
-    float low_[2] = {}, per_[2] = {};
-    int cells_ = 1;            // along each axis
-    std::vector<int> starts_;  // of the cells' entries
-    // Spheres by cell, from the lamp on.
-    std::vector<int> inside_;
+    // Cells across the light, each cut into slabs by height.
+    float low_[2] = {}, per_[2] = {}, lowest_ = 0, per_slab_ = 0;
+    int cells_ = 1, slabs_ = 1;        // along each axis
+    std::vector<int> starts_, next_;   // of the slabs' entries
+    std::vector<int> inside_;          // spheres by slab: who, where
     std::vector<float> a_, b_, height_, radius_;
-    std::vector<uint8_t> counts_;  // those of a cell whose shadows reach a ball: which, and who
-    std::vector<int> reaching_;
     std::vector<int> asked_;  // by whom last
-    std::vector<int> begin_, end_, all_;
+    std::vector<int> begin_, end_;
+    std::vector<Caster> all_;
     std::vector<float> left_;
 };
 

@@ -38,14 +38,20 @@ void Visibility::resize(const View& view) {
     view_.width *= view.samples;
     view_.height *= view.samples;
     view_.pixel /= view.samples;
-    stride_ = (view_.width + kLanes - 1) / kLanes * kLanes;
+    stride_ = samples_ * whole_steps(view.width);
 }
 
-void Visibility::begin(Span rows) {
+void Visibility::begin(Span columns, Span rows) {
     rows_ = {samples_ * rows.first, samples_ * rows.last + samples_ - 1};
     const size_t all = size_t(stride_) * (rows_.last - rows_.first + 1);
-    depths_.assign(all, kFar);
-    ids_.assign(all, kNone);
+    depths_.resize(all);
+    ids_.resize(all);
+    const int first = samples_ * (columns.first / kLanes * kLanes);
+    const int count = samples_ * whole_steps(columns.last + 1) - first;
+    for (size_t at = first; at < all; at += stride_) {
+        std::fill_n(&depths_[at], count, kFar);
+        std::fill_n(&ids_[at], count, kNone);
+    }
 }
 
 // Whether all samples around something see what is nearer. distance: that of its nearest point.
@@ -77,58 +83,64 @@ Bounds Visibility::bounds(F3 c, float radius) const {
 // With the ray d = (x, y, 1) and its difference e to the ray through the centre c, the ray meets
 // the sphere where t d² = d·c - sqrt(d² r² - |e × c|²). That root has no small difference of
 // large numbers in it, so single precision will do. All is divided by c.z.
-CAROM_WIDE bool Visibility::add(int index, F3 c, float radius) {
+CAROM_WIDE bool Visibility::add(int index, const Ball& ball) {
+    const F3 c = ball.center;
+    const float radius = ball.radius;
     if (c.z <= 0.02f * radius || dot(c, c) <= 1.02f * radius * radius) return false;
     const float pixel = float(view_.pixel);
     const float r = drawn_radius(c, radius) / c.z, r2 = r * r;
     const float x0 = c.x / c.z, y0 = c.y / c.z;
-    Bounds bounds = around(view_, c, r * c.z, 0);
-    bounds.y = common(bounds.y, rows_);
+    const Bounds bounds{ball.samples.x, common(ball.samples.y, rows_)};
     if (is_hidden(bounds, std::sqrt(dot(c, c)) - r * c.z)) return false;
-    const bool bounded = r < 0.95f;  // else its outline need not be an ellipse
+    // A narrow sphere is not worth it, and a large one's outline need not be an ellipse.
+    const bool narrowed = bounds.x.last - bounds.x.first >= 4 * kLanes && r < 0.95f;
     const float middle = 0.5f * float(view_.width) - 0.5f;
     const float p2 = r2 - 1 - y0 * y0;
     const float per_root = -1 / (p2 * pixel), at_x0 = x0 / pixel + middle;
-    int any = 0;
+    int any[kLanes] = {};
     for (int row = bounds.y.first; row <= bounds.y.last; ++row) {
         const float y = view_.ray_y(float(row)), dy = y - y0;
         const float p1 = r2 * x0 + x0 * y0 * dy;
         const float p0 = r2 * (1 + y * y + x0 * x0) - dy * dy * (1 + x0 * x0);
         Span s = bounds.x;
-        if (bounded) {
+        if (narrowed) {
             const float inside = p1 * p1 - p2 * p0;
             if (inside < 0) continue;
             const float at = p1 * per_root + at_x0, half = std::sqrt(inside) * per_root;
-            s = span(at - half, at + half, view_.width);
+            s = common(s, span(at - half, at + half, view_.width));
         }
         const int first = s.first / kLanes * kLanes;
-        const int count = (s.last - first + kLanes) / kLanes * kLanes;
-        float* __restrict const depth = &depths_[size_t(row - rows_.first) * stride_ + first];
-        int* __restrict const id = &ids_[size_t(row - rows_.first) * stride_ + first];
+        float* depth = &depths_[size_t(row - rows_.first) * stride_ + first];
+        int* id = &ids_[size_t(row - rows_.first) * stride_ + first];
         const float ahead = 1 + x0 * x0 + y * y0, begin = (float(first) - middle) * pixel - x0;
-        for (int k = 0; k < count; ++k) {
-            const float dx = begin + float(k) * pixel;
-            const float square = (p2 * dx + 2 * p1) * dx + p0;
-            const float t = c.z * (ahead + x0 * dx - std::sqrt(std::abs(square)));
-            // Bits and no choices, which would keep compilers from making vectors of the loop.
-            const int hit = -(int(square >= 0) & int(t > 0) & int(t < depth[k]));
-            id[k] = (index & hit) | (id[k] & ~hit);
-            depth[k] = hit ? t : depth[k];
-            any |= hit;
+        for (int k = 0; first + k <= s.last; k += kLanes, depth += kLanes, id += kLanes) {
+            for (int lane = 0; lane < kLanes; ++lane) {
+                const float dx = begin + float(k + lane) * pixel;
+                const float square = (p2 * dx + 2 * p1) * dx + p0;
+                const float t = c.z * (ahead + x0 * dx - std::sqrt(std::abs(square)));
+                // Bits and no choices, which would keep compilers from making vectors of the loop.
+                const int hit = -(int(square >= 0) & int(t > 0) & int(t < depth[lane]));
+                id[lane] = (index & hit) | (id[lane] & ~hit);
+                depth[lane] = hit ? t : depth[lane];
+                any[lane] |= hit;
+            }
         }
     }
-    return any;
+    int all = 0;
+    for (const int lane : any) all |= lane;
+    return all;
 }
 
-CAROM_WIDE void Visibility::open(int row, uint8_t* __restrict open,
+CAROM_WIDE void Visibility::open(int row, Span columns, uint8_t* __restrict open,
                                  uint8_t* __restrict whole) const {
-    const int n = view_.width / samples_;
+    const int n = columns.last - columns.first + 1;
     if (samples_ == 1) {
-        const int* const id = ids(row);
+        const int* const id = ids(row) + columns.first;
         for (int i = 0; i < n; ++i) open[i] = id[i] == kNone, whole[i] = 1;
         return;
     }
-    const int *const upper = ids(2 * row), *const lower = ids(2 * row + 1);
+    const int* const upper = ids(2 * row) + 2 * columns.first;
+    const int* const lower = ids(2 * row + 1) + 2 * columns.first;
     for (int i = 0; i < n; ++i) {
         const int a = upper[2 * i], b = upper[2 * i + 1], c = lower[2 * i], d = lower[2 * i + 1];
         open[i] = uint8_t((a == kNone) + (b == kNone) + (c == kNone) + (d == kNone));

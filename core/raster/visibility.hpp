@@ -14,31 +14,29 @@ public:
     static constexpr int kNone = -1;
 
     void resize(const View& view);
-    // Forgets all and looks at these rows of pixels from now on.
-    void begin(Span rows);
+    // Forgets all and looks at these pixels from now on.
+    void begin(Span columns, Span rows);
     // Whether the sphere is seen there, for now. Fastest from near to far: then most of those that
     // others hide are passed over, and what is seen once stays seen.
-    bool add(int index, F3 center, float radius);
-    // The samples among which a sphere is looked for, in all of the picture, and rows of pixels.
+    bool add(int index, const Ball& ball);
+    // The samples among which a sphere is looked for, in all of the picture.
     Bounds bounds(F3 center, float radius) const;
-    Span rows(F3 center, float radius) const {
-        const Span y = bounds(center, radius).y;
-        return y.first > y.last ? Span{} : Span{y.first / samples_, y.last / samples_};
-    }
 
     // Rows of samples. Depths are distances ahead times 1 + x² + y² of the ray (x, y, 1).
     const int* ids(int row) const { return &ids_[size_t(row - rows_.first) * stride_]; }
     const float* depths(int row) const { return &depths_[size_t(row - rows_.first) * stride_]; }
 
-    // The samples of each pixel of a row in which no sphere is seen, and whether it sees nothing
+    // The samples of some pixels of a row in which no sphere is seen, and whether each sees nothing
     // else than one sphere or none.
-    void open(int row, uint8_t* open, uint8_t* whole) const;
+    void open(int row, Span columns, uint8_t* open, uint8_t* whole) const;
 
-    // Whether spheres cover all of a pixel.
-    bool covered(int i, int j, int samples) const {
+    // Whether spheres cover all of kLanes pixels from the i-th on, of a row.
+    bool covered(int i, int row) const {
         int none = 0;
-        for (int row = samples * j; row < samples * (j + 1); ++row)
-            for (int k = samples * i; k < samples * (i + 1); ++k) none |= int(ids(row)[k] == kNone);
+        for (int at = samples_ * row; at < samples_ * (row + 1); ++at) {
+            const int* const id = ids(at) + samples_ * i;
+            for (int k = 0; k < samples_ * kLanes; ++k) none |= int(id[k] == kNone);
+        }
         return !none;
     }
 
@@ -46,12 +44,10 @@ private:
     bool is_hidden(const Bounds& bounds, float distance) const;
     float drawn_radius(F3 center, float radius) const;
 
-    static constexpr int kLanes = 8;  // samples to a step of the loop; rows are padded to it
-
     View view_;  // with samples as pixels
     int samples_ = 1;
-    int stride_ = 0;
-    Span rows_;  // of samples
+    int stride_ = 0;  // samples of a row, in whole steps
+    Span rows_;       // of samples
     std::vector<float> depths_;
     std::vector<int> ids_;
 };

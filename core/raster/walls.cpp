@@ -42,9 +42,7 @@ Wall::Wall(const View& view, const Look& look, const Face& face)
       u_(view.direction(face.u)),
       v_(view.direction(face.v)),
       normal_(view.direction(face.normal)),
-      level_(dot(normal_, corner_)),
-      shadows_(float(face.side_u), float(face.side_v), look.soft),
-      spots_(float(face.side_u), float(face.side_v), look.soft) {
+      level_(dot(normal_, corner_)) {
     along_u_ = (u_ * level_ - normal_ * dot(u_, corner_)) * float(1 / face.side_u);
     along_v_ = (v_ * level_ - normal_ * dot(v_, corner_)) * float(1 / face.side_v);
     const F3 a = u_ * float(face.side_u), b = v_ * float(face.side_v);
@@ -105,88 +103,92 @@ void Wall::paint(Frame& frame) {
 
 // With the line to the lamp l, places that a ball's shadow reaches are those at a distance s from
 // that line through the ball: s² = d² - (d·l)², an ellipse on the wall.
-CAROM_WIDE void Wall::shadow(const Ball& ball, F3 lamp) {
-    const float slant = dot(lamp, normal_);
-    const float gap = (dot(normal_, ball.center) - level_) / slant;
-    const float r = ball.radius, wide = half_shadow(look_, gap), reach = r + wide;
-    if (gap <= 0 || r * r < kFaintest * wide * wide) return;
-    const F3 foot = ball.center - lamp * gap - corner_;
-    const float lu = dot(lamp, u_), lv = dot(lamp, v_), per = 1 / (slant * slant);
-    const HalfShadow half(r, wide);
-    shadows_.splat(dot(foot, u_), dot(foot, v_), reach * std::sqrt(1 + lu * lu * per),
-                   reach * std::sqrt(1 + lv * lv * per), wide, [=](float du, float dv) {
-                       const float along = du * lu + dv * lv;
-                       const float s2 = du * du + dv * dv - along * along;
-                       return half.dark(std::sqrt(positive(s2)));
-                   });
+CAROM_WIDE void Wall::shadow(const std::vector<Ball>& balls, F3 lamp, LightMap& map) const {
+    const float slant = dot(lamp, normal_), per = 1 / slant;
+    const float lu = dot(lamp, u_), lv = dot(lamp, v_);
+    const float stretch_u = std::sqrt(1 + lu * lu * per * per);
+    const float stretch_v = std::sqrt(1 + lv * lv * per * per);
+    const float side_u = float(face_.side_u), side_v = float(face_.side_v);
+    for (const Ball& ball : balls) {
+        const F3 c = ball.center - corner_;
+        const float gap = dot(normal_, c) * per;
+        const float r = ball.radius, wide = half_shadow(look_, gap);
+        const float u = dot(c, u_) - gap * lu, reach_u = (r + wide) * stretch_u;
+        const float v = dot(c, v_) - gap * lv, reach_v = (r + wide) * stretch_v;
+        const bool beside = (u < -reach_u) | (u > side_u + reach_u) | (v < -reach_v) |
+                            (v > side_v + reach_v);
+        if (beside | (gap <= 0) | (r * r < kFaintest * wide * wide)) continue;
+        const HalfShadow half(r, wide);
+        map.splat(u, v, reach_u, reach_v, wide, [=](float du, float dv) {
+            const float along = du * lu + dv * lv;
+            const float s2 = du * du + dv * dv - along * along;
+            return half.dark(std::sqrt(positive(s2)));
+        });
+    }
 }
 
 // How much of the sky a ball hides from a place on a wall: r² h/(ρ² + h²)^(3/2).
-CAROM_WIDE void Wall::spot(const Ball& ball) {
-    const float height = dot(normal_, ball.center) - level_, r = ball.radius;
-    if (height < 0 || height > kNearWall * r) return;
-    const float high = std::max(height / r, 1.0f), reach = (0.8f + high) * r;
-    const float fade = clamp((kNearWall - high) / (kNearWall - 1));
-    const float most = float(face_.contact) * fade, per = 1 / r, per_reach = 1 / (reach * reach);
-    const F3 foot = ball.center - corner_;
-    spots_.splat(dot(foot, u_), dot(foot, v_), reach, reach, 0.3f * r, [=](float du, float dv) {
-        const float away2 = du * du + dv * dv, d2 = away2 * per * per + high * high;
-        return most * high / (d2 * std::sqrt(d2)) * clamp(1 - away2 * per_reach);
-    });
-}
-
-void Wall::light(const std::vector<Ball>& balls) {
-    const F3 lamp = view_.direction(look_.lamp);
-    const bool shadows = look_.shadows && face_.shade > 0 && dot(lamp, normal_) > 0.05f;
-    dark_ = shadows || face_.contact > 0;
-    if (!dark_) return;
-    shadows_.clear();
-    spots_.clear();
+CAROM_WIDE void Wall::spot(const std::vector<Ball>& balls, LightMap& map) const {
     for (const Ball& ball : balls) {
-        if (shadows) shadow(ball, lamp);
-        if (face_.contact > 0) spot(ball);
+        const F3 c = ball.center - corner_;
+        const float height = dot(normal_, c), r = ball.radius;
+        if (height < 0 || height > kNearWall * r) continue;
+        const float high = std::max(height / r, 1.0f), reach = (0.8f + high) * r;
+        const float fade = clamp((kNearWall - high) / (kNearWall - 1));
+        const float most = float(face_.contact) * fade, per = 1 / r, per_reach = 1 / (reach * reach);
+        map.splat(dot(c, u_), dot(c, v_), reach, reach, 0.3f * r, [=](float du, float dv) {
+            const float away2 = du * du + dv * dv, d2 = away2 * per * per + high * high;
+            return most * high / (d2 * std::sqrt(d2)) * clamp(1 - away2 * per_reach);
+        });
     }
-    shadows_.merge();
-    spots_.merge();
-    const float shade = float(face_.shade) * look_.shadowed;
-    // In few bytes, because the maps of all walls should stay in the cache.
-    const std::vector<float>& spots = spots_.finest();
-    const std::vector<float>& lamp_light = shadows_.finest();
-    light_.resize(spots.size());
-    for (size_t k = 0; k < spots.size(); ++k)
-        light_[k] = uint16_t(65535 * spots[k] * (1 - shade * (1 - lamp_light[k])) + 0.5f);
 }
 
+void Wall::light(const std::vector<Ball>& balls, LightMap& shadows, LightMap& spots) {
+    const F3 lamp = view_.direction(look_.lamp);
+    const bool shaded = look_.shadows && face_.shade > 0 && dot(lamp, normal_) > 0.05f;
+    dark_ = shaded || face_.contact > 0;
+    if (!dark_) return;
+    for (LightMap* const map : {&shadows, &spots})
+        map->begin(float(face_.side_u), float(face_.side_v), look_.soft);
+    if (shaded) shadow(balls, lamp, shadows);
+    if (face_.contact > 0) spot(balls, spots);
+    shadows.merge();
+    spots.merge();
+    light_.set(shadows, spots, float(face_.shade) * look_.shadowed);
+}
+
+// Steps of kLanes pixels, and only those where it is seen: what spheres cover may be darkened, too,
+// because it is painted over.
 void Wall::darken(const Visibility& seen, Frame& frame) const {
     if (!dark_) return;
-    const int samples = view_.samples;
     const Span rows = common(bounds_.y, frame.rows);
-    std::vector<int> open(view_.width + 1);
-    std::vector<float> factor(view_.width);
+    std::vector<int> first(view_.width / kLanes + 2);
     for (int j = rows.first; j <= rows.last; ++j) {
         int n = 0;
-        for (int i = columns_[j].first; i <= columns_[j].last; ++i) {
-            open[n] = i;
-            n += !seen.covered(i, j, samples);
+        for (int i = columns_[j].first / kLanes * kLanes; i <= columns_[j].last; i += kLanes) {
+            first[n] = i;
+            n += !seen.covered(i, j);
         }
-        left(open.data(), n, view_.ray_y(float(j)), factor.data());
-        float* const pixels = frame.row(j);
-        for (int k = 0; k < n; ++k)
-            for (int c = 0; c < 3; ++c) pixels[3 * open[k] + c] *= factor[k];
+        darken(first.data(), n, view_.ray_y(float(j)), frame.row(j));
     }
 }
 
-// What is left of the light in n pixels of a row; 1 beside the wall.
-CAROM_WIDE void Wall::left(const int* column, int n, float y, float* __restrict factor) const {
-    for (int k = 0; k < n; ++k) {
-        const float x = view_.ray_x(float(column[k]));
-        const float per = 1 / (normal_.x * x + normal_.y * y + normal_.z);
-        const float u = (along_u_.x * x + along_u_.y * y + along_u_.z) * per;
-        const float v = (along_v_.x * x + along_v_.y * y + along_v_.z) * per;
-        const bool there = (u >= 0) & (u <= 1) & (v >= 0) & (v <= 1) & (level_ * per > 0);
-        float some = between(light_.data(), spots_.places(), u, v) * (1.0f / 65535);
-        if (face_.fade > 0) some = 1 - rim(u, v) * (1 - some);
-        factor[k] = there ? some : 1;
+// What is left of the light; 1 beside the wall.
+CAROM_WIDE void Wall::darken(const int* first, int n, float y, float* __restrict pixels) const {
+    for (int at = 0; at < n; ++at) {
+        float factor[kLanes];
+        for (int k = 0; k < kLanes; ++k) {
+            const float x = view_.ray_x(float(first[at] + k));
+            const float per = 1 / (normal_.x * x + normal_.y * y + normal_.z);
+            const float u = (along_u_.x * x + along_u_.y * y + along_u_.z) * per;
+            const float v = (along_v_.x * x + along_v_.y * y + along_v_.z) * per;
+            const bool there = (u >= 0) & (u <= 1) & (v >= 0) & (v <= 1) & (level_ * per > 0);
+            float some = light_.at(u, v);
+            if (face_.fade > 0) some = 1 - rim(u, v) * (1 - some);
+            factor[k] = there ? some : 1;
+        }
+        float* const pixel = pixels + 3 * first[at];
+        for (int k = 0; k < 3 * kLanes; ++k) pixel[k] *= factor[k / 3];
     }
 }
 
@@ -211,7 +213,8 @@ void draw(const View& view, const Look& look, const Edge& edge, const Visibility
     const double reach = 0.5 * look.line_width + 1;
     const Span rows =
         common(span(std::min(ay, by) - reach, std::max(ay, by) + reach, view.height), frame.rows);
-    const Span columns = span(std::min(ax, bx) - reach, std::max(ax, bx) + reach, view.width);
+    const Span columns = common(
+        span(std::min(ax, bx) - reach, std::max(ax, bx) + reach, view.width), frame.columns);
     const int samples = view.samples;
     for (int j = rows.first; j <= rows.last; ++j) {
         // The pixels of this row that the line comes near: |uy (i - ax) - ux (j - ay)| < reach.

@@ -14,9 +14,10 @@ public:
 
     // A breath of colour, lightest in the middle, and the grid.
     void paint(Frame& frame);
-    // What spheres take away of its light, and where it is seen.
-    void light(const std::vector<Ball>& balls);
+    // What spheres take away of its light, and where it is seen. Both maps are only for the moment.
+    void light(const std::vector<Ball>& balls, LightMap& shadows, LightMap& spots);
     void darken(const Visibility& seen, Frame& frame) const;
+    Bounds darkened() const { return dark_ ? bounds_ : Bounds{}; }  // pixels
 
 private:
     // Where a ray meets it.
@@ -27,9 +28,9 @@ private:
     };
     Point at(float x, float y) const;
 
-    void shadow(const Ball& ball, F3 lamp);
-    void spot(const Ball& ball);
-    void left(const int* column, int n, float y, float* factor) const;
+    void shadow(const std::vector<Ball>& balls, F3 lamp, LightMap& map) const;
+    void spot(const std::vector<Ball>& balls, LightMap& map) const;
+    void darken(const int* first, int n, float y, float* pixels) const;
 
     View view_;
     Look look_;
@@ -40,8 +41,7 @@ private:
     Bounds bounds_;
     std::vector<Span> columns_;  // of each row, where it is seen
     bool dark_ = false;          // does anything take light away?
-    LightMap shadows_, spots_;
-    std::vector<uint16_t> light_;  // what both leave, of 65535
+    WallLight light_;
 };
 
 // A line, where no sphere is before it.

@@ -83,7 +83,7 @@ template <class Paint>
 void trace(const View& view, F3 center, float radius, int third, float width, float back_width,
            Frame& frame, Paint paint) {
     Bounds bounds = around(view, center, radius, 2);
-    bounds.y = common(bounds.y, frame.rows);
+    bounds = {common(bounds.x, frame.columns), common(bounds.y, frame.rows)};
     const int columns = bounds.x.last - bounds.x.first + 2;
     if (columns < 2 || bounds.y.first > bounds.y.last) return;
     std::vector<Hit> row(columns), below(columns);
@@ -105,7 +105,7 @@ void trace(const View& view, F3 center, float radius, int third, float width, fl
 
 }  // namespace
 
-void draw_wires(const View& view, const Look& look, const Ball& ball, Frame& frame) {
+void draw_wires(const View& view, const Look& look, const Ball& ball, F3 color, Frame& frame) {
     const F3 c = ball.center;
     const float r = ball.radius, width = look.line_width, pixel = float(view.pixel);
     if (c.z <= 0.02f * r || dot(c, c) <= 1.02f * r * r) return;
@@ -123,7 +123,7 @@ void draw_wires(const View& view, const Look& look, const Ball& ball, Frame& fra
                   0.8f * outline);
               const float fog =
                   look.fog_most * clamp((hit.along - look.fog_from) * look.fog_per_length);
-              F3 glow = mix(ball.color + look.tint * line, look.back, 0.8f * fog);
+              F3 glow = mix(color + look.tint * line, look.back, 0.8f * fog);
               glow = {clamp(glow.x), clamp(glow.y), clamp(glow.z)};
               blend(at, glow, coverage * (fill + (1 - fill) * line));
           });

@@ -7,7 +7,7 @@
 namespace carom::raster {
 
 // A sphere of wires, those in front brighter than those behind.
-void draw_wires(const View& view, const Look& look, const Ball& ball, Frame& frame);
+void draw_wires(const View& view, const Look& look, const Ball& ball, F3 color, Frame& frame);
 
 enum class Half { far, near };
 // Half of a spherical wall about the origin, so that spheres can lie between.
