@@ -19,8 +19,10 @@
 
 #if defined(__GNUC__)
 #define CAROM_INLINE [[gnu::always_inline]] inline
+#define CAROM_APART [[gnu::noinline]]
 #else
 #define CAROM_INLINE inline
+#define CAROM_APART
 #endif
 
 namespace carom::raster {

@@ -34,8 +34,9 @@ struct Parts {
     }
 };
 
-// Which of kLanes samples see a ball, as bits.
-CAROM_INLINE unsigned which(const int* id, int ball) {
+// Which of kLanes samples see a ball, as bits. On its own, or compilers unroll the loop before they
+// can make a vector of it.
+CAROM_APART CAROM_WIDE unsigned which(const int* id, int ball) {
     unsigned bits = 0;
     for (int k = 0; k < kLanes; ++k) bits |= unsigned(id[k] == ball) << k;
     return bits;

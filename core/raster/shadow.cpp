@@ -110,7 +110,9 @@ void Casters::ask(int i, int cell, const std::vector<Ball>& balls, const Look& l
     const int from = slab(p.height), to = slab(p.height + far);
     left_[i] = dimmed(starts_[cell * slabs_ + to], starts_[(cell + 1) * slabs_], p, far, look);
     begin_[i] = int(all_.size());
-    const Cells x = touched(p.a, radius, 0), y = touched(p.b, radius, 1);
+    // A usual ball's casters all reach its middle's cell, see `sort_into_cells`.
+    const float reach = std::max(2 * radius - usual_, 0.0f);
+    const Cells x = touched(p.a, reach, 0), y = touched(p.b, reach, 1);
     for (int row = y.low; row <= y.high; ++row) {
         for (int at = row * cells_ + x.low; at <= row * cells_ + x.high; ++at)
             collect(starts_[at * slabs_ + from], starts_[at * slabs_ + to + 1], i, far, balls,
@@ -132,8 +134,13 @@ void Casters::sort_into_cells(const std::vector<Ball>& balls, const Look& look) 
         low_[1] = std::min(low_[1], p.b), high[1] = std::max(high[1], p.b);
         lowest_ = std::min(lowest_, p.height), highest = std::max(highest, p.height);
     }
+    // Half-shadows that change within a ball are no wider than that, so they reach its middle from
+    // two of its radii beside who casts them.
+    usual_ = 0;
+    for (const Ball& ball : balls) usual_ += 2 * ball.radius / float(n);
     const auto reach = [&](int i) {
-        return balls[i].radius + half_shadow(look, places_[i].height - lowest_);
+        const float wide = half_shadow(look, places_[i].height - lowest_);
+        return balls[i].radius + std::max(wide, usual_);
     };
     float reaches = 0, near = 0;
     for (int i = 0; i < n; ++i) {

@@ -79,6 +79,7 @@ private:
     std::vector<Place> places_;
     // Cells across the light, each cut into slabs by height.
     float low_[2] = {}, per_[2] = {}, lowest_ = 0, per_slab_ = 0;
+    float usual_ = 0;  // diameter
     int cells_ = 1, slabs_ = 1;        // along each axis
     std::vector<int> starts_, next_;   // of the slabs' entries
     std::vector<int> inside_;          // spheres by slab: who, where

@@ -169,12 +169,13 @@ void Wall::darken(const Visibility& seen, Frame& frame) const {
             first[n] = i;
             n += !seen.covered(i, j);
         }
-        darken(first.data(), n, view_.ray_y(float(j)), frame.row(j));
+        darken_row(first.data(), n, view_.ray_y(float(j)), frame.row(j));
     }
 }
 
 // What is left of the light; 1 beside the wall.
-CAROM_WIDE void Wall::darken(const int* first, int n, float y, float* __restrict pixels) const {
+template <bool fades>
+CAROM_INLINE void Wall::darken(const int* first, int n, float y, float* __restrict pixels) const {
     for (int at = 0; at < n; ++at) {
         float factor[kLanes];
         for (int k = 0; k < kLanes; ++k) {
@@ -184,12 +185,19 @@ CAROM_WIDE void Wall::darken(const int* first, int n, float y, float* __restrict
             const float v = (along_v_.x * x + along_v_.y * y + along_v_.z) * per;
             const bool there = (u >= 0) & (u <= 1) & (v >= 0) & (v <= 1) & (level_ * per > 0);
             float some = light_.at(u, v);
-            if (face_.fade > 0) some = 1 - rim(u, v) * (1 - some);
+            if constexpr (fades) some = 1 - rim(u, v) * (1 - some);
             factor[k] = there ? some : 1;
         }
         float* const pixel = pixels + 3 * first[at];
         for (int k = 0; k < 3 * kLanes; ++k) pixel[k] *= factor[k / 3];
     }
+}
+
+CAROM_WIDE void Wall::darken_row(const int* first, int n, float y, float* pixels) const {
+    if (face_.fade > 0)
+        darken<true>(first, n, y, pixels);
+    else
+        darken<false>(first, n, y, pixels);
 }
 
 void draw(const View& view, const Look& look, const Edge& edge, const Visibility& seen,

@@ -30,7 +30,9 @@ private:
 
     void shadow(const std::vector<Ball>& balls, F3 lamp, LightMap& map) const;
     void spot(const std::vector<Ball>& balls, LightMap& map) const;
+    template <bool fades>
     void darken(const int* first, int n, float y, float* pixels) const;
+    void darken_row(const int* first, int n, float y, float* pixels) const;
 
     View view_;
     Look look_;
