@@ -21,7 +21,7 @@ void LightMap::begin(float side_u, float side_v, float finest) {
 
 void LightMap::begin(Level& level) {
     if (level.used) return;
-    level.light.assign(size_t(level.n) * level.n, 1.0f);
+    level.light.assign(size_t(level.n) * level.stride(), 1.0f);
     level.used = true;
 }
 
@@ -68,10 +68,10 @@ void LightMap::merge() {
         for (int j = 0; j < fine.n; ++j) {
             // The middle of a fine place lies at a quarter or three quarters between coarse ones.
             const auto row = [&](int at) {
-                return &coarse.light[size_t(std::clamp(at, 0, coarse.n - 1)) * coarse.n];
+                return coarse.row(std::clamp(at, 0, coarse.n - 1));
             };
             refine(row(j / 2), row(j / 2 + (j % 2 ? 1 : -1)), coarse.n, between.data(),
-                   &fine.light[size_t(j) * fine.n]);
+                   fine.row(j));
         }
     }
     begin(levels_[count_ - 1]);
@@ -81,8 +81,8 @@ void WallLight::set(const LightMap& lamp, const LightMap& spots, float shade) {
     n_ = lamp.places();
     pairs_.resize(size_t(n_) * n_);
     std::vector<int> row(size_t(n_) + 1);
-    for (size_t at = 0; at < pairs_.size(); at += n_)
-        pair_up(&lamp.finest()[at], &spots.finest()[at], n_, shade, row.data(), &pairs_[at]);
+    for (int j = 0; j < n_; ++j)
+        pair_up(lamp.row(j), spots.row(j), n_, shade, row.data(), &pairs_[size_t(j) * n_]);
 }
 
 }  // namespace carom::raster

@@ -29,11 +29,9 @@ public:
         const float at_v = v * level.per_v - 0.5f, half_v = reach_v * level.per_v;
         const Span columns = span(at_u - half_u, at_u + half_u, n);
         const Span rows = span(at_v - half_v, at_v + half_v, n);
-        // Whole vectors: beyond its reach a thing must take nothing.
-        const int first = columns.first / kLanes * kLanes;
-        const int count = whole_steps(columns.last + 1 - first);
+        const int first = columns.first, count = whole_steps(columns.last + 1 - first);
         for (int j = rows.first; j <= rows.last; ++j) {
-            float* const light = &level.light[size_t(j) * n + first];
+            float* const light = level.row(j) + first;
             const float dv = (float(j) + 0.5f) * step_v - v;
             const float du = (float(first) + 0.5f) * step_u - u;
             for (int k = 0; k < count; ++k) light[k] *= 1 - dark(du + float(k) * step_u, dv);
@@ -42,7 +40,7 @@ public:
 
     // Puts all sizes together; the finest has everything then.
     void merge();
-    const std::vector<float>& finest() const { return levels_[count_ - 1].light; }
+    const float* row(int j) const { return levels_[count_ - 1].row(j); }  // of the finest
     int places() const { return levels_[count_ - 1].n; }  // along a side of the finest
 
 private:
@@ -51,6 +49,10 @@ private:
         float step_u, step_v, per_u, per_v;  // sides of a place, and what they divide by
         bool used = false;                   // else its light is not up to date
         std::vector<float> light;
+
+        int stride() const { return n + kLanes; }
+        float* row(int j) { return &light[size_t(j) * stride()]; }
+        const float* row(int j) const { return &light[size_t(j) * stride()]; }
     };
     Level& level_for(float scale);
     static void begin(Level& level);

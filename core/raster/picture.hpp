@@ -142,11 +142,12 @@ struct alignas(32) Skin {
     F3 slope;  // its change per unit of the normal
 };
 
-constexpr int kLanes = 8;  // pixels and the like to a step of a loop
+// Pixels and the like to a step of a loop. Loops end with a whole step, so what they go through has
+// as many more at its end.
+constexpr int kLanes = 8;
 inline int whole_steps(int n) { return (n + kLanes - 1) / kLanes * kLanes; }
 
-// A part of a picture: three numbers per pixel, from 0 to 1. Rows have a few pixels more than the
-// picture, so that loops may end with a whole step.
+// A part of a picture: three numbers per pixel, from 0 to 1.
 struct Frame {
     Span columns, rows;
     int stride = 0;
@@ -154,7 +155,7 @@ struct Frame {
 
     void resize(int width, Span which) {
         columns = {0, width - 1}, rows = which;
-        stride = whole_steps(width);
+        stride = width + kLanes;
         rgb.resize(size_t(3) * stride * (which.last - which.first + 1));
     }
     float* row(int j) { return &rgb[size_t(3) * stride * (j - rows.first)]; }

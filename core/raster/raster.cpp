@@ -43,16 +43,34 @@ Raster::Raster(const View& view, const Look& look, Room room)
     empty_ = std::move(bytes);
 }
 
+// From near to far, but for those that share one of about n places: nearly is good enough, because
+// it only saves work. Wires keep their own order.
+void Raster::order(const std::vector<Vec3>& position, const std::vector<double>& radius) {
+    const int n = int(position.size());
+    order_.resize(n);
+    if (look_.wire || n == 0) {
+        for (int i = 0; i < n; ++i) order_[i] = i;
+        return;
+    }
+    distance_.resize(n);
+    for (int i = 0; i < n; ++i)
+        distance_[i] = float(norm2(position[i] - view_.eye) - radius[i] * radius[i]);
+    const auto [near, far] = std::minmax_element(distance_.begin(), distance_.end());
+    const float low = *near, per = float(n) / std::max(*far - low, 1e-30f);
+    const auto place = [&](int i) { return int(clamp((distance_[i] - low) * per, 0, float(n - 1))); };
+    starts_.assign(n + 1, 0);
+    for (int i = 0; i < n; ++i) ++starts_[place(i) + 1];
+    for (int k = 0; k < n; ++k) starts_[k + 1] += starts_[k];
+    for (int i = 0; i < n; ++i) order_[starts_[place(i)]++] = i;
+}
+
 void Raster::place(const std::vector<Vec3>& position, const std::vector<double>& radius,
                    const std::vector<uint32_t>& color) {
     const int n = int(position.size());
-    order_.resize(n);
-    for (int i = 0; i < n; ++i)
-        order_[i] = {float(norm2(position[i] - view_.eye) - radius[i] * radius[i]), i};
-    if (!look_.wire) std::sort(order_.begin(), order_.end());  // wires keep their own order
+    order(position, radius);
     balls_.resize(n), skins_.resize(n);
     for (int k = 0; k < n; ++k) {
-        const int i = order_[k].second;
+        const int i = order_[k];
         const auto part = [&](int shift) { return float(color[i] >> shift & 255) / 255; };
         Ball& ball = balls_[k];
         ball.center = view_.place(position[i]);

@@ -26,6 +26,7 @@ public:
     const View& view() const { return view_; }
 
 private:
+    void order(const std::vector<Vec3>& position, const std::vector<double>& radius);
     void place(const std::vector<Vec3>& position, const std::vector<double>& radius,
                const std::vector<uint32_t>& color);
     void sort_into_bands();
@@ -43,13 +44,14 @@ private:
     Shading shading_;
     Visibility seen_;
     Casters casters_;
-    std::vector<std::pair<float, int>> order_;  // spheres by distance
-    std::vector<Ball> balls_;                   // from near to far
-    std::vector<Skin> skins_;                   // of these
-    int band_ = 1;                              // rows of pixels that are drawn at once
-    std::vector<int> starts_, inside_;          // spheres by band
-    std::vector<Span> columns_;                 // of bands, that spheres may cover
-    std::vector<int> visible_;                  // those of a band that are seen
+    std::vector<float> distance_;       // of spheres, nearly
+    std::vector<int> order_;            // from near to far
+    std::vector<Ball> balls_;           // in this order
+    std::vector<Skin> skins_;           // of these
+    int band_ = 1;                      // rows of pixels that are drawn at once
+    std::vector<int> starts_, inside_;  // spheres by band
+    std::vector<Span> columns_;         // of bands, that spheres may cover
+    std::vector<int> visible_;          // those of a band that are seen
     std::optional<Crowd> crowd_;
     Frame still_;                 // what lies behind all spheres
     Frame frame_;                 // a band of the picture

@@ -50,6 +50,7 @@ struct Shading::Batch {
     float* pixel[kBatch] = {};
     float weight[kBatch] = {};                 // share of the pixel
     float x[kBatch] = {}, y[kBatch] = {};      // the ray is (x, y, 1)
+    float away[kBatch];                        // 1 over its length
     float px[kBatch], py[kBatch], pz[kBatch];  // the place
     float nx[kBatch], ny[kBatch], nz[kBatch];  // the normal
     float seen[kBatch], left[kBatch];          // of the lamp; of all light, in the crowd
@@ -87,7 +88,7 @@ CAROM_WIDE void Shading::paint(const Visibility& seen, const std::vector<int>& v
             };
             const int *const upper = seen.ids(samples * row),
                       *const lower = seen.ids(samples * row + samples - 1);
-            for (int k = bounds.x.first / kLanes * kLanes; k <= bounds.x.last; k += kLanes) {
+            for (int k = bounds.x.first / samples * samples; k <= bounds.x.last; k += kLanes) {
                 unsigned one = which(upper + k, ball);
                 if (samples == 1) {
                     for (; one; one &= one - 1) add(k + std::countr_zero(one), 1);
@@ -134,10 +135,11 @@ CAROM_WIDE void Shading::light(Batch& b, int who, const Ball& ball, const Skin& 
     for (int k = 0; k < n; ++k) {
         const float x = b.x[k], y = b.y[k];
         const float ex = y * c.z - c.y, ey = c.x - x * c.z, ez = x * c.y - y * c.x;
-        const float d2 = 1 + x * x + y * y;
+        const float d2 = 1 + x * x + y * y, away = 1 / std::sqrt(d2);
         const float square = d2 * r2 - (ex * ex + ey * ey + ez * ez);
         const float half = std::sqrt(positive(square));
-        const float t = (x * c.x + y * c.y + c.z - half) / d2;
+        const float t = (x * c.x + y * c.y + c.z - half) * (away * away);
+        b.away[k] = away;
         b.px[k] = t * x, b.py[k] = t * y, b.pz[k] = t;
         const float dx = b.px[k] - c.x, dy = b.py[k] - c.y, dz = t - c.z;
         const float per = 1 / std::sqrt(dx * dx + dy * dy + dz * dz);
@@ -150,7 +152,7 @@ CAROM_WIDE void Shading::light(Batch& b, int who, const Ball& ball, const Skin& 
     const F3 own = skin.color * skin.color;  // the share of light that it gives back
     for (int k = 0; k < n; ++k) {
         const float x = b.x[k], y = b.y[k];
-        const float ray = std::sqrt(1 + x * x + y * y), away = 1 / ray;
+        const float away = b.away[k];
         const float nx = b.nx[k], ny = b.ny[k], nz = b.nz[k], left = b.left[k];
         const float facing = nx * lamp_.x + ny * lamp_.y + nz * lamp_.z;
         const float turned = clamp((facing + 0.05f) * 4),
@@ -161,15 +163,15 @@ CAROM_WIDE void Shading::light(Batch& b, int who, const Ball& ball, const Skin& 
         const float high = 0.5f + 0.5f * (nx * up_.x + ny * up_.y + nz * up_.z);
         const float around = (0.6f + 0.4f * seen) * left;
         // The dull shine: halfway between lamp and eye.
-        const float hx = lamp_.x - x * away, hy = lamp_.y - y * away, hz = lamp_.z - away;
-        const float half = (nx * hx + ny * hy + nz * hz) / std::sqrt(hx * hx + hy * hy + hz * hz);
+        const float to_eye = -(nx * x + ny * y + nz) * away;
+        const float between = 2 - 2 * (lamp_.x * x + lamp_.y * y + lamp_.z) * away;
+        const float half = (facing + to_eye) / std::sqrt(positive(between) + 1e-12f);
         const float s1 = half > 0 ? half : 0, s2 = s1 * s1, s4 = s2 * s2, s8 = s4 * s4;
         const float s16 = s8 * s8, s64 = s16 * s16 * s16 * s16;
         const float shine = (0.10f * s16 + 0.16f * s64) * seen * left;
-        const float to_eye = -(nx * x + ny * y + nz) * away;
         const float edge = 1 - (to_eye > 0 ? to_eye : 0);
         const float rim = edge * edge * edge * high * seen * left;
-        const float distance = b.pz[k] * ray;
+        const float distance = b.pz[k] * (1 + x * x + y * y) * away;
         const float mist =
             look_.fog_most * clamp((distance - look_.fog_from) * look_.fog_per_length);
         const auto lit = [&](float share, float k_, float s_, float g_, float f_) {

@@ -20,10 +20,10 @@ inline float half_shadow(const Look& look, float gap) {
 // The part of the lamp that a disc of radius r hides from a place at a distance s from the line
 // through its middle to the lamp; the lamp's disc is drawn there with radius `wide`.
 inline float hidden(float s, float r, float wide) {
-    const float inner = r > wide ? r - wide : wide - r;
-    const float most = r < wide ? r * r / (wide * wide) : 1.0f;
-    const float share = clamp((s - inner) / (r + wide - inner));
-    return most * (1 - share * share * (3 - 2 * share));
+    const float per = 1 / (r * wide), larger = r > wide ? r : wide;
+    const float ratio = clamp(r * r * per), inner = std::abs(r - wide);
+    const float share = clamp((s - inner) * (0.5f * larger * per));
+    return ratio * ratio * (1 - share * share * (3 - 2 * share));
 }
 
 // The same for many places behind one thing.

@@ -38,7 +38,7 @@ void Visibility::resize(const View& view) {
     view_.width *= view.samples;
     view_.height *= view.samples;
     view_.pixel /= view.samples;
-    stride_ = samples_ * whole_steps(view.width);
+    stride_ = samples_ * (view.width + kLanes);
 }
 
 void Visibility::begin(Span columns, Span rows) {
@@ -46,8 +46,8 @@ void Visibility::begin(Span columns, Span rows) {
     const size_t all = size_t(stride_) * (rows_.last - rows_.first + 1);
     depths_.resize(all);
     ids_.resize(all);
-    const int first = samples_ * (columns.first / kLanes * kLanes);
-    const int count = samples_ * whole_steps(columns.last + 1) - first;
+    const int first = samples_ * columns.first;
+    const int count = samples_ * (columns.last + 1 + kLanes) - first;
     for (size_t at = first; at < all; at += stride_) {
         std::fill_n(&depths_[at], count, kFar);
         std::fill_n(&ids_[at], count, kNone);
@@ -109,11 +109,10 @@ CAROM_WIDE bool Visibility::add(int index, const Ball& ball) {
             const float at = p1 * per_root + at_x0, half = std::sqrt(inside) * per_root;
             s = common(s, span(at - half, at + half, view_.width));
         }
-        const int first = s.first / kLanes * kLanes;
-        float* depth = &depths_[size_t(row - rows_.first) * stride_ + first];
-        int* id = &ids_[size_t(row - rows_.first) * stride_ + first];
-        const float ahead = 1 + x0 * x0 + y * y0, begin = (float(first) - middle) * pixel - x0;
-        for (int k = 0; first + k <= s.last; k += kLanes, depth += kLanes, id += kLanes) {
+        float* depth = &depths_[size_t(row - rows_.first) * stride_ + s.first];
+        int* id = &ids_[size_t(row - rows_.first) * stride_ + s.first];
+        const float ahead = 1 + x0 * x0 + y * y0, begin = (float(s.first) - middle) * pixel - x0;
+        for (int k = 0; s.first + k <= s.last; k += kLanes, depth += kLanes, id += kLanes) {
             for (int lane = 0; lane < kLanes; ++lane) {
                 const float dx = begin + float(k + lane) * pixel;
                 const float square = (p2 * dx + 2 * p1) * dx + p0;

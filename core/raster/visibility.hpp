@@ -46,8 +46,8 @@ private:
 
     View view_;  // with samples as pixels
     int samples_ = 1;
-    int stride_ = 0;  // samples of a row, in whole steps
-    Span rows_;       // of samples
+    int stride_ = 0;
+    Span rows_;  // of samples
     std::vector<float> depths_;
     std::vector<int> ids_;
 };

@@ -165,7 +165,7 @@ void Wall::darken(const Visibility& seen, Frame& frame) const {
     std::vector<int> first(view_.width / kLanes + 2);
     for (int j = rows.first; j <= rows.last; ++j) {
         int n = 0;
-        for (int i = columns_[j].first / kLanes * kLanes; i <= columns_[j].last; i += kLanes) {
+        for (int i = columns_[j].first; i <= columns_[j].last; i += kLanes) {
             first[n] = i;
             n += !seen.covered(i, j);
         }
