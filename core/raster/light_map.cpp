@@ -74,15 +74,16 @@ void LightMap::merge() {
                    fine.row(j));
         }
     }
-    begin(levels_[count_ - 1]);
 }
 
 void WallLight::set(const LightMap& lamp, const LightMap& spots, float shade) {
     n_ = lamp.places();
     pairs_.resize(size_t(n_) * n_);
     std::vector<int> row(size_t(n_) + 1);
+    const std::vector<float> all(n_, 1.0f);
+    const auto light = [&](const LightMap& map, int j) { return map.any() ? map.row(j) : all.data(); };
     for (int j = 0; j < n_; ++j)
-        pair_up(lamp.row(j), spots.row(j), n_, shade, row.data(), &pairs_[size_t(j) * n_]);
+        pair_up(light(lamp, j), light(spots, j), n_, shade, row.data(), &pairs_[size_t(j) * n_]);
 }
 
 }  // namespace carom::raster

@@ -40,6 +40,7 @@ public:
 
     // Puts all sizes together; the finest has everything then.
     void merge();
+    bool any() const { return levels_[count_ - 1].used; }  // has anything been drawn?
     const float* row(int j) const { return levels_[count_ - 1].row(j); }  // of the finest
     int places() const { return levels_[count_ - 1].n; }  // along a side of the finest
 

@@ -50,44 +50,54 @@ public:
 
     // Asks for all balls that may be in the picture. lamp: unit vector towards it.
     void find(const std::vector<Ball>& balls, const Look& look, F3 lamp);
-    void clear() { begin_.clear(); }
+    void clear() { found_.clear(); }
 
-    bool any() const { return !begin_.empty(); }
+    bool any() const { return !found_.empty(); }
     // Those whose shadows change within a ball.
-    const Caster* begin(int ball) const { return all_.data() + begin_[ball]; }
-    const Caster* end(int ball) const { return all_.data() + end_[ball]; }
+    const Caster* begin(int ball) const { return casters_.data() + found_[ball].first; }
+    const Caster* end(int ball) const { return casters_.data() + found_[ball].last; }
     // What the others leave of the lamp, for the whole ball.
-    float left(int ball) const { return left_[ball]; }
+    float left(int ball) const { return found_[ball].left; }
 
 private:
-    struct Place {
-        float a, b, height;  // across the light, and towards the lamp
+    // A ball across the light, and towards the lamp.
+    struct alignas(16) Place {
+        float a, b, height, radius;
     };
-    struct Cells {
+    // Who may cast shadows into a cell across the light, by height, as rows for the loops.
+    struct Column {
+        int cell = -1, first = 0;  // of all entries
+        std::vector<int> who;
+        std::vector<float> a, b, height, radius;
+    };
+    struct Range {
         int low, high;
     };
-    Cells touched(float at, float reach, int axis) const;
+    struct Found {
+        int first = 0, last = 0;
+        float left = 1;
+    };
+    Range touched(float at, float reach, int axis) const;
     int slab(float height) const;
-    void sort_into_cells(const std::vector<Ball>& balls, const Look& look);
-    float dimmed(int first, int last, const Place& p, float far, const Look& look) const;
-    void collect(int first, int last, int ball, float far, const std::vector<Ball>& balls,
-                 const Look& look);
-    void ask(int ball, int cell, const std::vector<Ball>& balls, const Look& look);
-    int cell_of(const Place& p) const;
+    int start(int cell, int slab_) const { return starts_[size_t(cell) * slabs_ + slab_]; }
+    void sort_into_cells(const Look& look);
+    void load(int cell, Column& column) const;
+    void ask(int ball, const Column& column, const Look& look);
+    float dimmed(const Column& column, int first, const Place& p, float far,
+                 const Look& look) const;
+    void collect(const Column& column, int first, int last, int ball, float far, const Look& look);
 
-    F3 lamp_;
+    F3 axes_[3];  // of places, in the eye's space
     std::vector<Place> places_;
-    // Cells across the light, each cut into slabs by height.
-    float low_[2] = {}, per_[2] = {}, lowest_ = 0, per_slab_ = 0;
-    float usual_ = 0;  // diameter
-    int cells_ = 1, slabs_ = 1;        // along each axis
-    std::vector<int> starts_, next_;   // of the slabs' entries
-    std::vector<int> inside_;          // spheres by slab: who, where
-    std::vector<float> a_, b_, height_, radius_;
+    float low_[2] = {}, per_[2] = {}, lowest_ = 0, per_slab_ = 0;  // of cells and their slabs
+    float usual_ = 0;                                              // diameter
+    int cells_ = 1, slabs_ = 1;                                    // along each axis
+    std::vector<int> own_;                                         // cells of the balls' middles
+    std::vector<int> starts_, next_, inside_;                      // balls by cell and slab
+    Column here_, beside_;
     std::vector<int> asked_;  // by whom last
-    std::vector<int> begin_, end_;
-    std::vector<Caster> all_;
-    std::vector<float> left_;
+    std::vector<Found> found_;
+    std::vector<Caster> casters_;
 };
 
 }  // namespace carom::raster
