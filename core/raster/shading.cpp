@@ -1,6 +1,9 @@
 #include "shading.hpp"
 
+#include <algorithm>
 #include <bit>
+
+#include "../memory.hpp"
 
 namespace carom::raster {
 
@@ -71,7 +74,9 @@ CAROM_WIDE void Shading::paint(const Visibility& seen, const std::vector<int>& v
     const Parts parts(samples);
     const float quarter = 0.25f * float(view_.pixel);
     Batch batch;
-    for (const int ball : visible) {
+    for (size_t k = 0; k < visible.size(); ++k) {
+        const int ball = visible[k];
+        if (casters.any()) fetch(casters.begin(visible[std::min(k + 4, visible.size() - 1)]));
         const Bounds& bounds = balls[ball].samples;
         const Span rows = common({bounds.y.first / samples, bounds.y.last / samples}, frame.rows);
         for (int row = rows.first; row <= rows.last; ++row) {
@@ -88,18 +93,18 @@ CAROM_WIDE void Shading::paint(const Visibility& seen, const std::vector<int>& v
             };
             const int *const upper = seen.ids(samples * row),
                       *const lower = seen.ids(samples * row + samples - 1);
-            for (int k = bounds.x.first / samples * samples; k <= bounds.x.last; k += kLanes) {
-                unsigned one = which(upper + k, ball);
+            for (int i = bounds.x.first / samples * samples; i <= bounds.x.last; i += kLanes) {
+                unsigned one = which(upper + i, ball);
                 if (samples == 1) {
-                    for (; one; one &= one - 1) add(k + std::countr_zero(one), 1);
+                    for (; one; one &= one - 1) add(i + std::countr_zero(one), 1);
                     continue;
                 }
-                const unsigned two = which(lower + k, ball);
+                const unsigned two = which(lower + i, ball);
                 unsigned either = one | two;
                 either = (either | either >> 1) & 0x55;  // a bit for each pixel
                 for (; either; either &= either - 1) {
                     const int at = std::countr_zero(either);
-                    add((k + at) / 2, (one >> at & 3) | (two >> at & 3) << 2);
+                    add((i + at) / 2, (one >> at & 3) | (two >> at & 3) << 2);
                 }
             }
         }

@@ -32,12 +32,13 @@ public:
 
     // Whether spheres cover all of kLanes pixels from the i-th on, of a row.
     bool covered(int i, int row) const {
-        int none = 0;
+        int all = 0;  // below 0 if one is
         for (int at = samples_ * row; at < samples_ * (row + 1); ++at) {
-            const int* const id = ids(at) + samples_ * i;
-            for (int k = 0; k < samples_ * kLanes; ++k) none |= int(id[k] == kNone);
+            const int* id = ids(at) + samples_ * i;
+            for (int part = 0; part < samples_; ++part, id += kLanes)
+                for (int k = 0; k < kLanes; ++k) all |= id[k];
         }
-        return !none;
+        return all >= 0;
     }
 
 private:
