@@ -8,11 +8,15 @@
 
 #include "../vec3.hpp"
 
-// Compiled a second time for wider vectors, and chosen when the program starts. Nothing is fused,
-// so both give the same bits. The sanitizers look at the plain one.
+// Compiled again for wider vectors, and chosen when the program starts. Nothing is fused, so all give
+// the same bits. The sanitizers look at the plain one.
 #if defined(__gnu_linux__) && defined(__x86_64__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__)
+#if __GNUC__ >= 12
+#define CAROM_WIDE [[gnu::target_clones("arch=x86-64-v4", "avx2", "default")]]
+#else
 #define CAROM_WIDE [[gnu::target_clones("avx2", "default")]]
+#endif
 #else
 #define CAROM_WIDE
 #endif
