@@ -121,12 +121,11 @@ CAROM_WIDE Crowd::Light Crowd::about(F3 center, float far, const View& view) con
             return near_row + (along(at + row) - near_row) * beyond[1][lane];
         };
         const float near_layer = across(first[lane]);
-        left[lane] =
-            near_layer + (across(first[lane] + layer) - near_layer) * beyond[2][lane];
+        left[lane] = near_layer + (across(first[lane] + layer) - near_layer) * beyond[2][lane];
     }
-    return {left[7], view.direction({0.5 * double(left[1] - left[0]),
-                                     0.5 * double(left[3] - left[2]),
-                                     0.5 * double(left[5] - left[4])})};
+    return {left[7],
+            view.direction({0.5 * double(left[1] - left[0]), 0.5 * double(left[3] - left[2]),
+                            0.5 * double(left[5] - left[4])})};
 }
 
 }  // namespace carom::raster

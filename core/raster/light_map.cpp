@@ -50,8 +50,7 @@ CAROM_WIDE void refine(const float* __restrict near_row, const float* __restrict
 // All spots and most of the lamp's light, as a row of pairs.
 CAROM_WIDE void pair_up(const float* __restrict lamp, const float* __restrict spots, int n,
                         float shade, int* __restrict row, uint32_t* __restrict pairs) {
-    for (int i = 0; i < n; ++i)
-        row[i] = int(65535 * spots[i] * (1 - shade * (1 - lamp[i])) + 0.5f);
+    for (int i = 0; i < n; ++i) row[i] = int(65535 * spots[i] * (1 - shade * (1 - lamp[i])) + 0.5f);
     row[n] = row[n - 1];
     for (int i = 0; i < n; ++i) pairs[i] = uint32_t(row[i]) | uint32_t(row[i + 1]) << 16;
 }
@@ -67,9 +66,7 @@ void LightMap::merge() {
         begin(fine);
         for (int j = 0; j < fine.n; ++j) {
             // The middle of a fine place lies at a quarter or three quarters between coarse ones.
-            const auto row = [&](int at) {
-                return coarse.row(std::clamp(at, 0, coarse.n - 1));
-            };
+            const auto row = [&](int at) { return coarse.row(std::clamp(at, 0, coarse.n - 1)); };
             refine(row(j / 2), row(j / 2 + (j % 2 ? 1 : -1)), coarse.n, between.data(),
                    fine.row(j));
         }
@@ -81,7 +78,9 @@ void WallLight::set(const LightMap& lamp, const LightMap& spots, float shade) {
     pairs_.resize(size_t(n_) * n_);
     std::vector<int> row(size_t(n_) + 1);
     const std::vector<float> all(n_, 1.0f);
-    const auto light = [&](const LightMap& map, int j) { return map.any() ? map.row(j) : all.data(); };
+    const auto light = [&](const LightMap& map, int j) {
+        return map.any() ? map.row(j) : all.data();
+    };
     for (int j = 0; j < n_; ++j)
         pair_up(light(lamp, j), light(spots, j), n_, shade, row.data(), &pairs_[size_t(j) * n_]);
 }

@@ -13,7 +13,8 @@ namespace carom::raster {
 
 class LightMap {
 public:
-    // Full light on a wall of these sides. finest: length over which the finest things drawn change.
+    // Full light on a wall of these sides. finest: length over which the finest things drawn
+    // change.
     void begin(float side_u, float side_v, float finest);
 
     // Takes light away around (u, v), places on the wall as lengths from its corner, as far as

@@ -8,8 +8,8 @@
 
 #include "../vec3.hpp"
 
-// Compiled again for wider vectors, and chosen when the program starts. Nothing is fused, so all give
-// the same bits. The sanitizers look at the plain one.
+// Compiled again for wider vectors, and chosen when the program starts. Nothing is fused, so all
+// give the same bits. The sanitizers look at the plain one.
 #if defined(__gnu_linux__) && defined(__x86_64__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__)
 #if __GNUC__ >= 12

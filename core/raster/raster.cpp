@@ -57,7 +57,9 @@ void Raster::order(const std::vector<Vec3>& position, const std::vector<double>&
         distance_[i] = float(norm2(position[i] - view_.eye) - radius[i] * radius[i]);
     const auto [near, far] = std::minmax_element(distance_.begin(), distance_.end());
     const float low = *near, per = float(n) / std::max(*far - low, 1e-30f);
-    const auto place = [&](int i) { return int(clamp((distance_[i] - low) * per, 0, float(n - 1))); };
+    const auto place = [&](int i) {
+        return int(clamp((distance_[i] - low) * per, 0, float(n - 1)));
+    };
     starts_.assign(n + 1, 0);
     for (int i = 0; i < n; ++i) ++starts_[place(i) + 1];
     for (int k = 0; k < n; ++k) starts_[k + 1] += starts_[k];
@@ -104,7 +106,9 @@ void Raster::sort_into_bands() {
     });
     for (int band = 0; band < bands; ++band) {
         starts_[band + 1] += starts_[band];
-        columns_[band] = columns_[band].empty() ? Span{} : Span{columns_[band].first / view_.samples, columns_[band].last / view_.samples};
+        columns_[band] = columns_[band].empty() ? Span{}
+                                                : Span{columns_[band].first / view_.samples,
+                                                       columns_[band].last / view_.samples};
     }
     inside_.resize(starts_.back());
     std::vector<int> next(starts_.begin(), starts_.end() - 1);

@@ -91,8 +91,8 @@ CAROM_WIDE void Shading::paint(const Visibility& seen, const std::vector<int>& v
                 batch.y[at] = y + part.above * quarter;
                 if (batch.count == kBatch) light(batch, ball, balls[ball], skins[ball], casters);
             };
-            const int *const upper = seen.ids(samples * row),
-                      *const lower = seen.ids(samples * row + samples - 1);
+            const int *const upper = seen.ids(samples * row), *const lower = seen.ids(
+                                                                  samples * row + samples - 1);
             for (int i = bounds.x.first / samples * samples; i <= bounds.x.last; i += kLanes) {
                 unsigned one = which(upper + i, ball);
                 if (samples == 1) {

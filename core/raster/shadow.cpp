@@ -116,8 +116,7 @@ CAROM_WIDE void Casters::collect(const Column& column, int first, int last, int 
             if (asked_[who] == ball) continue;  // met in another cell
             asked_[who] = ball;
             const float high = height[at] - kCreeps * p.radius;
-            casters_.push_back(
-                {axes_[0] * a[at] + axes_[1] * b[at] + axes_[2] * high, radius[at]});
+            casters_.push_back({axes_[0] * a[at] + axes_[1] * b[at] + axes_[2] * high, radius[at]});
         }
     }
 }

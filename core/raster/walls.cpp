@@ -115,8 +115,8 @@ CAROM_WIDE void Wall::shadow(const std::vector<Ball>& balls, F3 lamp, LightMap& 
         const float r = ball.radius, wide = half_shadow(look_, gap);
         const float u = dot(c, u_) - gap * lu, reach_u = (r + wide) * stretch_u;
         const float v = dot(c, v_) - gap * lv, reach_v = (r + wide) * stretch_v;
-        const bool beside = (u < -reach_u) | (u > side_u + reach_u) | (v < -reach_v) |
-                            (v > side_v + reach_v);
+        const bool beside =
+            (u < -reach_u) | (u > side_u + reach_u) | (v < -reach_v) | (v > side_v + reach_v);
         if (beside | (gap <= 0) | (r * r < kFaintest * wide * wide)) continue;
         const HalfShadow half(r, wide);
         map.splat(u, v, reach_u, reach_v, wide, [=](float du, float dv) {
@@ -135,7 +135,8 @@ CAROM_WIDE void Wall::spot(const std::vector<Ball>& balls, LightMap& map) const 
         if (height < 0 || height > kNearWall * r) continue;
         const float high = std::max(height / r, 1.0f), reach = (0.8f + high) * r;
         const float fade = clamp((kNearWall - high) / (kNearWall - 1));
-        const float most = float(face_.contact) * fade, per = 1 / r, per_reach = 1 / (reach * reach);
+        const float most = float(face_.contact) * fade, per = 1 / r,
+                    per_reach = 1 / (reach * reach);
         map.splat(dot(c, u_), dot(c, v_), reach, reach, 0.3f * r, [=](float du, float dv) {
             const float away2 = du * du + dv * dv, d2 = away2 * per * per + high * high;
             return most * high / (d2 * std::sqrt(d2)) * clamp(1 - away2 * per_reach);
@@ -221,8 +222,8 @@ void draw(const View& view, const Look& look, const Edge& edge, const Visibility
     const double reach = 0.5 * look.line_width + 1;
     const Span rows =
         common(span(std::min(ay, by) - reach, std::max(ay, by) + reach, view.height), frame.rows);
-    const Span columns = common(
-        span(std::min(ax, bx) - reach, std::max(ax, bx) + reach, view.width), frame.columns);
+    const Span columns =
+        common(span(std::min(ax, bx) - reach, std::max(ax, bx) + reach, view.width), frame.columns);
     const int samples = view.samples;
     for (int j = rows.first; j <= rows.last; ++j) {
         // The pixels of this row that the line comes near: |uy (i - ax) - ux (j - ay)| < reach.

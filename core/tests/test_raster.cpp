@@ -155,22 +155,43 @@ TEST(lines_are_hidden_by_what_is_before_them) {
 }
 
 TEST(a_light_map_keeps_what_is_drawn_into_any_of_its_sizes) {
-    LightMap map(10, 10, 0.05f);
-    const auto at = [&](float u, float v) {
-        return between(map.finest().data(), map.places(), u, v);
+    LightMap map, none;
+    WallLight wall;
+    none.begin(10, 10, 0.05f);
+    const auto finish = [&] {
+        map.merge();
+        wall.set(map, none, 1);
     };
     for (const float wide : {0.06f, 0.5f, 3.0f}) {
-        map.clear();
+        map.begin(10, 10, 0.05f);
         map.splat(4, 6, 3 * wide, 3 * wide, wide, [=](float u, float v) {
             return 0.5f * std::exp(-(u * u + v * v) / (wide * wide));
         });
-        map.merge();
-        CHECK(std::abs(at(0.4f, 0.6f) - 0.5f) < 0.12f);
-        CHECK(std::abs(at(0.4f + 0.1f * wide, 0.6f) - (1 - 0.5f * std::exp(-1.0f))) < 0.06f);
+        finish();
+        CHECK(std::abs(wall.at(0.4f, 0.6f) - 0.5f) < 0.12f);
+        CHECK(std::abs(wall.at(0.4f + 0.1f * wide, 0.6f) - (1 - 0.5f * std::exp(-1.0f))) < 0.06f);
     }
-    map.clear();
-    map.merge();
-    CHECK(at(0.4f, 0.6f) == 1);
+    // What reaches over a border is not seen at the one opposite.
+    map.begin(10, 10, 0.05f);
+    map.splat(9.9f, 5, 2, 2, 0.1f, [](float, float) { return 0.5f; });
+    finish();
+    CHECK(std::abs(wall.at(0.99f, 0.5f) - 0.5f) < 0.01f);
+    CHECK(wall.at(0.005f, 0.5f) == 1);
+    map.begin(10, 10, 0.05f);
+    finish();
+    CHECK(wall.at(0.4f, 0.6f) == 1);
+}
+
+TEST(a_wall_keeps_part_of_the_lamps_light_and_all_of_the_spots) {
+    LightMap lamp, spots;
+    for (LightMap* const map : {&lamp, &spots}) {
+        map->begin(1, 1, 0.05f);
+        map->splat(0.5f, 0.5f, 2, 2, 1, [](float, float) { return 0.5f; });
+        map->merge();
+    }
+    WallLight wall;
+    wall.set(lamp, spots, 0.6f);
+    CHECK(std::abs(wall.at(0.3f, 0.8f) - 0.5f * (1 - 0.6f * 0.5f)) < 1e-4f);
 }
 
 TEST(a_picture_does_not_remember_the_one_before) {
@@ -182,6 +203,35 @@ TEST(a_picture_does_not_remember_the_one_before) {
         Raster raster(view(), look(), {{floor}, {}, {}});
         const std::vector<uint8_t> first = drawn(raster, s);
         CHECK(first == drawn(raster, s));
+    }
+}
+
+TEST(only_what_changes_is_drawn_again) {
+    const Face floor = floor_at(-2);
+    const Edge edge{{-4, 0, -1.9}, {4, 0, 2}, 0.8, 0.4};
+    for (const Room& room : {Room{{}, {edge}, {3}}, Room{{floor}, {edge}, {}}}) {
+        for (const int samples : {1, 2}) {
+            Raster raster(view(samples), look(), room);
+            for (const double x : {-2.0, 1.5, 40.0, 0.0}) {  // once it is out of sight
+                Spheres s;
+                s.add({x, 0, 0.4 * x}, 0.5, 0xffff00);
+                s.add({x, 2, -0.5}, 0.7, 0x0080ff);
+                CHECK(drawn(raster, s) == drawn(s, room, samples));
+            }
+            CHECK(drawn(raster, {}) == drawn({}, room, samples));
+        }
+    }
+}
+
+TEST(small_spheres_darken_a_giant_anywhere) {
+    Look without = look();
+    without.shadows = false;
+    for (const double x : {-0.9, 0.0, 0.9}) {
+        Spheres s;  // many far below, so that cells are small and the giant lies in several
+        for (int k = 0; k < 400; ++k) s.add({k % 20 - 9.5, k / 20 - 9.5, -8}, 0.05, 0x000000);
+        s.add({0, 0, 0}, 1.5, 0xffffff);
+        s.add({x, -0.3, 1.9}, 0.3, 0x000000);
+        CHECK(sum(drawn(s)) < sum(drawn(s, {}, 1, without)) - 1000);
     }
 }
 
