@@ -119,11 +119,19 @@ TEST(shadows_darken) {
     CHECK(sum(drawn(s, room)) < sum(drawn(s, room, 1, without)));
     const Room spotted{{floor_at(-2)}, {}, {}};
     CHECK(sum(drawn(s, spotted)) < sum(drawn(s, room)));
-    // One sphere above another, close and far away.
-    for (const double height : {0.2, 2.0}) {
+    // One sphere above another, close and far away: behind that the half-shadow is wider than it.
+    Look deep = look();
+    deep.deepest = 20;
+    for (const double height : {0.2, 2.0, 8.0}) {
         Spheres two = s;
         two.add({0.2, 0, height}, 0.5, 0xffffff);
-        CHECK(sum(drawn(two)) < sum(drawn(two, {}, 1, without)));
+        CHECK(sum(drawn(two, {}, 1, deep)) < sum(drawn(two, {}, 1, without)));
+    }
+    // A shadow falls beside the sphere, to both sides.
+    for (const double side : {-0.6, 0.6}) {
+        Look aside = look(), dark = without;
+        aside.lamp = dark.lamp = {side, 0, 0.8};
+        CHECK(sum(drawn(s, room, 1, aside)) < sum(drawn(s, room, 1, dark)) - 500);
     }
     // Beside it there is none.
     Spheres apart = s;
@@ -207,18 +215,21 @@ TEST(a_picture_does_not_remember_the_one_before) {
 }
 
 TEST(only_what_changes_is_drawn_again) {
-    const Face floor = floor_at(-2);
     const Edge edge{{-4, 0, -1.9}, {4, 0, 2}, 0.8, 0.4};
-    for (const Room& room : {Room{{}, {edge}, {3}}, Room{{floor}, {edge}, {}}}) {
+    Look aside = look();  // shadows fall where no sphere is
+    aside.lamp = {0.6, 0, 0.8};
+    for (const Room& room : {Room{{}, {edge}, {3}}, Room{{floor_at(-2)}, {edge}, {}}}) {
         for (const int samples : {1, 2}) {
-            Raster raster(view(samples), look(), room);
-            for (const double x : {-2.0, 1.5, 40.0, 0.0}) {  // once it is out of sight
+            Raster raster(view(samples), aside, room);
+            // Nearer, farther, out of sight, and back.
+            for (const Vec3& x :
+                 {Vec3{0, -3, 0}, {0.1, 0, 0}, {-1.5, 2, 1}, {40, 0, 0}, {0, 3, 0}}) {
                 Spheres s;
-                s.add({x, 0, 0.4 * x}, 0.5, 0xffff00);
-                s.add({x, 2, -0.5}, 0.7, 0x0080ff);
-                CHECK(drawn(raster, s) == drawn(s, room, samples));
+                s.add(x, 0.5, 0xffff00);
+                s.add({-x.x, x.y, -0.5}, 0.7, 0x0080ff);
+                CHECK(drawn(raster, s) == drawn(s, room, samples, aside));
             }
-            CHECK(drawn(raster, {}) == drawn({}, room, samples));
+            CHECK(drawn(raster, {}) == drawn({}, room, samples, aside));
         }
     }
 }
