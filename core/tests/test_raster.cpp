@@ -128,10 +128,12 @@ TEST(shadows_darken) {
         CHECK(sum(drawn(two, {}, 1, deep)) < sum(drawn(two, {}, 1, without)));
     }
     // A shadow falls beside the sphere, to both sides.
+    Spheres high;
+    high.add({0, 0, 1}, 0.5, 0xffffff);
     for (const double side : {-0.6, 0.6}) {
         Look aside = look(), dark = without;
         aside.lamp = dark.lamp = {side, 0, 0.8};
-        CHECK(sum(drawn(s, room, 1, aside)) < sum(drawn(s, room, 1, dark)) - 500);
+        CHECK(sum(drawn(high, room, 1, aside)) < sum(drawn(high, room, 1, dark)) - 500);
     }
     // Beside it there is none.
     Spheres apart = s;
