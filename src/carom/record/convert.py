@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from carom.checks import nearest
-from carom.errors import FileError, InputError, UnknownNameError
+from carom.errors import FileError, InputError, UnknownNameError, unwritable
 from carom.event_file.layout import carom_version, packed
 from carom.event_file.recorder import OpenFile, about_file
 from carom.event_file.source import ENDINGS
@@ -51,8 +51,7 @@ def convert(run: Recording, path: str | Path, progress: Progress | None = None) 
     except FileError as error:  # of the events' writer, which knows the other name only
         raise FileError(str(error).replace(str(part), str(target))) from error
     except OSError as error:
-        msg = f"cannot write {target}: {error.strerror or error}"
-        raise FileError(msg) from error
+        raise unwritable(target, error) from error
     finally:
         part.unlink(missing_ok=True)
 

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from carom.errors import FileError, InputError
+from carom.errors import InputError, unwritable
 from carom.scene import Scene
 from carom.state import Floats
 from carom.view import bundle
@@ -125,8 +125,7 @@ def write_replay(
         part.write_text(text, encoding="utf-8", newline="\n")
         part.replace(path)
     except OSError as error:
-        msg = f"{path} cannot be written: {error.strerror or error}"
-        raise FileError(msg) from error
+        raise unwritable(path, error) from error
     finally:
         part.unlink(missing_ok=True)
 
