@@ -3,7 +3,6 @@
 from typing import Annotated, Any
 
 import typer
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
 from carom.cli import report
@@ -153,25 +152,15 @@ def _shown(target: str, words: list[str], seed: int | None) -> tuple[Any, str]:
 
 def _execute(shown: Any, path: str, options: dict[str, Any], label: str, *, quiet: bool) -> int:
     """Render with a progress bar on standard error, if somebody looks at it."""
-    console = report.notes()
     drawn = 0
-    with Progress(
-        TextColumn("{task.description}", style="bold"),
-        BarColumn(bar_width=None),
-        TaskProgressColumn(),
-        TextColumn("{task.fields[shown]}", style="cyan"),
-        TimeRemainingColumn(compact=True),
-        console=console,
-        transient=True,
-        disable=quiet or not console.is_terminal,
-    ) as bar:
-        task = bar.add_task(label, total=None, shown="")
+    with report.bar(quiet=quiet) as bar:
+        task = bar.add_task(label, total=None, note="")
 
         def show(now: Progressed) -> None:
             nonlocal drawn
             drawn = now.done
             text = f"picture {now.done:,} of {now.total:,}, time {now.time:.4g}"
-            bar.update(task, completed=now.done, total=now.total, shown=text)
+            bar.update(task, completed=now.done, total=now.total, note=text)
 
         try:
             render(shown, path, progress=show, **options)
@@ -180,6 +169,6 @@ def _execute(shown: Any, path: str, options: dict[str, Any], label: str, *, quie
             if drawn and not path.lower().endswith(".html"):
                 held = "1 picture" if drawn == 1 else f"{drawn:,} pictures"
                 kept = f"Stopped by Ctrl-C; {path} holds {held} until then."
-                console.print(Text(kept, style="yellow"), soft_wrap=True)
+                bar.console.print(Text(kept, style="yellow"), soft_wrap=True)
             raise typer.Exit(INTERRUPTED) from None
     return max(1, drawn)
