@@ -46,7 +46,7 @@ class Progress:
     Attributes
     ----------
     done, total : int
-        Pictures.
+        Pictures; those of a replay count twice, when they are there and when they are packed.
     time : float
         Simulated time of the last one.
     """
@@ -266,7 +266,7 @@ def _replay(job: _Job) -> None:
         nonlocal done
         done += 1
         if job.progress is not None:
-            job.progress(Progress(done, len(times), time))
+            job.progress(Progress(done, 2 * len(times), time))
 
     write_replay(job.source, job.path, times, color=job.style.color, speed=job.speed, progress=show)
 

@@ -137,7 +137,7 @@ def test_free_flight_is_foreseen_and_nothing_is_written():
     assert np.count_nonzero(misses[:, :, 1:]) < 0.05 * 2 * frames * numbers
 
 
-@pytest.mark.parametrize(("name", "most"), [("gas", 0.35e6), ("fluid", 0.6e6)])
+@pytest.mark.parametrize(("name", "most"), [("gas", 0.4e6), ("fluid", 0.6e6)])
 def test_a_thousand_spheres_in_three_hundred_frames_stay_below_a_megabyte(name, most):
     sim = carom.Simulation(scenes.build(name, {"n": 1000}))
     sim.run(duration=sim.pace)  # no crystal any more, and Maxwell's velocities
@@ -283,10 +283,10 @@ def test_a_full_disk_leaves_the_page_that_was_there(tmp_path, monkeypatch):
     assert [(file.name, file.read_text()) for file in tmp_path.iterdir()] == [("a.html", "before")]
 
 
-def test_progress_tells_every_frame(tmp_path):
+def test_progress_tells_every_frame_when_it_is_there_and_when_it_is_packed(tmp_path):
     sim, told = carom.Simulation(scenes.build("two-balls")), []
     write_replay(sim, tmp_path / "a.html", [0, 1, 2], progress=told.append)
-    assert told == [0, 1, 2]
+    assert told == [0, 1, 2, 0, 1, 2]
 
 
 def test_motion_too_wild_for_whole_numbers():

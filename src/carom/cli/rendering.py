@@ -152,21 +152,22 @@ def _shown(target: str, words: list[str], seed: int | None) -> tuple[Any, str]:
 
 def _execute(shown: Any, path: str, options: dict[str, Any], label: str, *, quiet: bool) -> int:
     """Render with a progress bar on standard error, if somebody looks at it."""
-    drawn = 0
+    drawn, replay = 0, path.lower().endswith(".html")
     with report.bar(quiet=quiet) as bar:
         task = bar.add_task(label, total=None, note="")
 
         def show(now: Progressed) -> None:
             nonlocal drawn
-            drawn = now.done
-            text = f"picture {now.done:,} of {now.total:,}, time {now.time:.4g}"
+            drawn = now.done // 2 if replay else now.done
+            which = "" if replay else f"picture {now.done:,} of {now.total:,}, "
+            text = f"{which}time {now.time:.4g}"
             bar.update(task, completed=now.done, total=now.total, note=text)
 
         try:
             render(shown, path, progress=show, **options)
         except KeyboardInterrupt:
             # Only films are kept in part; one that is there may be an old one.
-            if drawn and not path.lower().endswith(".html"):
+            if drawn and not replay:
                 held = "1 picture" if drawn == 1 else f"{drawn:,} pictures"
                 kept = f"Stopped by Ctrl-C; {path} holds {held} until then."
                 bar.console.print(Text(kept, style="yellow"), soft_wrap=True)

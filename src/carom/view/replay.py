@@ -98,7 +98,7 @@ def write_replay(
     speed : float
         At which it begins to play, in multiples of the scene's pace.
     progress : callable, optional
-        Told the time of every frame that is done.
+        Told the time of each frame twice: when it is there, and when it is packed.
 
     Raises
     ------
@@ -212,7 +212,7 @@ def pack(
         np.array(counts, np.uint32),
         speed,
     )
-    return encode(reel), about["title"] or "carom"
+    return encode(reel, progress), about["title"] or "carom"
 
 
 def _row(frame: Instant) -> list[float]:
