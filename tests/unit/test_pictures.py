@@ -149,7 +149,16 @@ def test_everything_is_in_sight(name):
 def test_straight_from_above_left_and_right_keep_their_meaning():
     eye = eye_of(scene((0, 0, 0)), camera=carom.Camera((0, 0, 30)))
     assert np.degrees(np.arccos(-eye.forward @ eye.above)) == pytest.approx(1.76, abs=0.01)
-    assert np.abs(eye.right) == pytest.approx([1, 0, 0])
+    assert eye.right == pytest.approx([1, 0, 0])
+    assert eye.up == pytest.approx([0, 1, 0], abs=0.04)
+
+
+@pytest.mark.parametrize("x", [0.0, -0.0, 1e-17, -1e-17])
+@pytest.mark.parametrize("z", [30, -30])
+def test_straight_from_above_or_below_nothing_is_turned_round(x, z):
+    for y in (0.0, -0.0, 1e-17, -1e-17):
+        eye = eye_of(scene((0, 0, 0)), camera=carom.Camera((x, y, z)))
+        assert eye.right == pytest.approx([1, 0, 0])
 
 
 def test_a_camera_may_stand_very_close_to_its_target():
