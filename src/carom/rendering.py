@@ -281,6 +281,7 @@ class _Artist:
             legend = Legend.of(first.state, job.style)
             self._words = Caption(_title(job.source), legend, job.style, step)
         self._begin(first)
+        self._scales = self._painter.scales
 
     def _begin(self, frame: Any) -> None:
         self._walls = frame.walls
@@ -290,6 +291,8 @@ class _Artist:
         """One picture."""
         if frame.walls != self._walls:  # changed by hand on the way
             self._begin(frame)
+            self._painter.scales = self._scales
+        self._scales.follow(frame.state, frame.world)
         return self._worded(self._painter.paint(frame.state), frame)
 
     def gamut(self, frame: Any) -> Pixels:

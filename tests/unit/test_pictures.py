@@ -259,15 +259,6 @@ def test_fixed_spheres_have_no_energy():
     assert (still, moving != still) == (0xE8E8E8, True)
 
 
-def test_scales_know_what_falling_will_bring():
-    state, world = scene((0, 0, -4), (0, 0, 4), gravity=(0, 0, -1)).build()
-    ends = look.scales(state, world, paper=False)
-    fall = 8.0
-    assert ends["full_energy"] == pytest.approx(state.mass[0] * fall, rel=0.5)
-    assert ends["full_speed"] == pytest.approx(2 * fall**0.5, rel=0.5)
-    assert look.scales(state, world, paper=True)["full_energy"] == 500
-
-
 @pytest.mark.parametrize(("most", "end"), [(0, 5), (5, 5), (6, 10), (11, 20), (1234, 2000)])
 def test_the_scale_of_collisions_ends_at_a_round_number(most, end):
     assert look.full_count(np.array([0, most], np.uint32)) == end

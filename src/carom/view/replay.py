@@ -10,6 +10,8 @@ from typing import Any, Protocol
 import numpy as np
 
 from carom.errors import InputError, unwritable
+from carom.pictures.look import is_paper
+from carom.pictures.scales import Scales
 from carom.scene import Scene
 from carom.state import Floats
 from carom.view import bundle
@@ -171,6 +173,8 @@ def pack(
     first: Any = None
     asked = len(times) if isinstance(times, Sized) else 0
     rows: list[list[float]] = []
+    scales = Scales(is_paper(source.scene))
+    full = scales.ends
     places: list[Any] = []
     speeds: list[Any] = []
     counts: list[Any] = []
@@ -191,7 +195,9 @@ def pack(
                 f"which holds {MOST:,} in all: take fewer frames (--fps, a shorter stretch)"
             )
             raise InputError(msg)
-        rows.append(_row(frame))
+        ends = scales.follow(frame.state, frame.world)
+        full = full if rows else ends
+        rows.append([*_row(frame), *ends])
         places.append(np.asarray(frame.position, np.float32).T)
         speeds.append(np.asarray(frame.velocity, np.float32).T)
         counts.append(counts_of(frame))
@@ -201,7 +207,7 @@ def pack(
         msg = f"a replay needs at least two frames at different times; there are {len(rows)}"
         raise InputError(msg)
     sitter = _Sitter(source.scene, first.world, first.walls, source.pace)
-    about = portrait(sitter, first.state, 0)
+    about = portrait(sitter, first.state, 0, full)
     about |= {} if color is None else {"color": color}
     about |= {} if title is None else {"title": title}
     reel = Reel(
@@ -216,7 +222,7 @@ def pack(
 
 
 def _row(frame: Instant) -> list[float]:
-    """`wire.REEL_COLUMNS`; seven digits are enough for what is only shown."""
+    """`wire.REEL_COLUMNS` but for the ends of scales; seven digits are enough to be shown."""
     shown = [frame.kinetic_energy, frame.potential_energy, frame.dissipated, frame.energy_drift]
     moved = [*np.asarray(frame.momentum).tolist(), frame.temperature]
     short = np.array([*shown, *moved], np.float32).astype(float).tolist()
