@@ -68,10 +68,10 @@ def test_scales_follow_what_has_left_them_and_nothing_less():
     assert ends(sim, scales)[1] == 2
     sim.velocity = (2.1, 0, 0)
     assert ends(sim, scales) == (5, 5)
-    sim.velocity = (0.6, 0, 0)
+    sim.velocity = (0.9, 0, 0)
     assert ends(sim, scales)[1] == 5
-    sim.velocity = (0.4, 0, 0)
-    assert ends(sim, scales)[1] == 1
+    sim.velocity = (0.8, 0, 0)
+    assert ends(sim, scales)[1] == 2
 
 
 def test_what_comes_to_rest_leaves_scales_alone():
@@ -126,7 +126,7 @@ def test_no_film_of_a_gas_that_cools_becomes_one_colour(film_ends):
     speeds = np.linalg.norm(sim.velocity, axis=1)
     assert np.median(speeds) < 0.1 * first  # all would be as blue as the slowest
     assert 0.1 * last < np.median(speeds) < 0.9 * last
-    assert sorted(set(drawn.values()), reverse=True) == [2, 0.5, 0.1]
+    assert sorted(set(drawn.values()), reverse=True) == [2, 0.5, 0.2, 0.05]
 
 
 def test_balls_at_rest_at_first_do_not_become_one_colour(film_ends):

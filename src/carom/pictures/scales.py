@@ -13,7 +13,7 @@ from carom.world import World
 PAPER_FULL = 500.0
 #: A scale stays while the end that would suit is within these parts of its own. Beyond, most
 #: spheres would have the colour of one of its ends.
-LEAST, MOST = 1 / 5, 2.0
+LEAST, MOST = 1 / 3, 2.0
 HEIGHT = 2 / 3  #: of potential energy, as balls that are thrown up have it on average
 
 
