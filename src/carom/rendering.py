@@ -158,6 +158,13 @@ class _Job:
                 f"{self.earliest:.9g}; begin later"
             )
             raise InputError(msg)
+        last = self.until if self.until is not None else self.start
+        if self.is_recording and last > self.source.end:
+            msg = (
+                f"the last moment would be {last:.9g}, but the recording ends at "
+                f"{self.source.end:.9g}; end earlier"
+            )
+            raise InputError(msg)
         if not self.path.parent.is_dir():
             msg = f"there is no folder {self.path.parent}; make it first, or write elsewhere"
             raise FileError(msg)

@@ -35,7 +35,7 @@ from carom.cli.resuming import (
 )
 from carom.cli.running import as_data, execute, goal, summary
 from carom.cli.sketching import sketch
-from carom.cli.source import parsed, source, whole
+from carom.cli.source import own_options, parsed, source, whole
 from carom.cli.story import TOLD, story
 from carom.cli.validating import validate
 from carom.errors import InputError, RunError
@@ -186,7 +186,7 @@ def show(
     if scene.endswith(".gsd"):
         show_recording(scene, words, host, number, no_browser=no_browser, json=json, quiet=quiet)
         return
-    found = source(scene, words, whole("seed", seed))
+    found = source(scene, words, whole("seed", seed), own_options(context))
     sim = found.simulation(method, parsed("tick", tick))
 
     def ready(view: LiveView) -> None:
@@ -245,7 +245,7 @@ def run(
         given = scene or context.args or seed or tick or method != "exact" or plan.asked
         found, sim = resumed(resume, refuse=bool(given), ends=(until, collisions, events))
     else:
-        found = source(scene, context.args, whole("seed", seed))
+        found = source(scene, context.args, whole("seed", seed), own_options(context))
     aim = goal(
         found.scene.pace,
         until=parsed("until", until),
@@ -298,7 +298,7 @@ def compare(
     quiet: Quiet = False,
 ) -> None:
     """Run a scene exactly and in the paper's ticks, and compare."""
-    found = source(scene, context.args, whole("seed", seed))
+    found = source(scene, context.args, whole("seed", seed), own_options(context))
     aim = goal(found.scene.pace, until=parsed("until", until))
     data = compare_both(found, aim, parsed("tick", tick), quiet=quiet or json)
     if json:

@@ -5,8 +5,9 @@ from typing import Annotated, Any
 import typer
 from rich.text import Text
 
+from carom.checks import number
 from carom.cli import report
-from carom.cli.source import parsed, source, whole
+from carom.cli.source import own_options, parsed, source, whole
 from carom.errors import InputError
 from carom.record import load
 from carom.rendering import Progress as Progressed
@@ -37,8 +38,8 @@ def render_file(
     duration: Annotated[
         str | None, typer.Option(metavar="TIME", help="The same, counted from where it begins.")
     ] = None,
-    speed: Annotated[
-        str, typer.Option(metavar="X", help="Times the scene's own pace; 0.1 is slow motion.")
+    slow_motion: Annotated[
+        str, typer.Option(metavar="X", help="Times slower than the scene's own pace; 0.5: faster.")
     ] = "1",
     fps: Annotated[
         str | None, typer.Option(metavar="N", help="Pictures per second; 30, for a GIF 25.")
@@ -78,7 +79,7 @@ def render_file(
     if not output:
         msg = f"say where to write with -o, as in 'carom render {scene or 'gas'} -o film.mp4'"
         raise InputError(msg)
-    shown, label = _shown(scene, context.args, whole("seed", seed))
+    shown, label = _shown(scene, context, whole("seed", seed))
     first, last = parsed("from", begin), parsed("until", until)
     length = parsed("duration", duration)
     if length is not None:
@@ -86,10 +87,11 @@ def render_file(
             msg = "give only one of --until, --duration: a film has one end"
             raise InputError(msg)
         last = length + (getattr(shown, "start", 0.0) if first is None else first)
+    slower = number("--slow-motion", parsed("slow-motion", slow_motion), above=0)
     options: dict[str, Any] = {
         "begin": first,
         "until": last,
-        "speed": parsed("speed", speed),
+        "speed": 1 / slower,
         "fps": parsed("fps", fps),
         "size": sized(size),
         "camera": None if camera is None else _camera(camera),
@@ -138,12 +140,12 @@ def _camera(text: str) -> Camera:
     return Camera((x, y, z), (tx, ty, tz))
 
 
-def _shown(target: str, words: list[str], seed: int | None) -> tuple[Any, str]:
+def _shown(target: str, context: typer.Context, seed: int | None) -> tuple[Any, str]:
     """What is to be shown, and what it is called."""
     if not target.endswith(".gsd"):
-        found = source(target, words, seed)
+        found = source(target, context.args, seed, own_options(context))
         return found.simulation(), found.text
-    given = [*words, *([] if seed is None else ["--seed"])]
+    given = [*context.args, *([] if seed is None else ["--seed"])]
     if given:
         msg = f"{given[0]} is an option of scenes, not of recordings; leave it out"
         raise InputError(msg)
