@@ -111,6 +111,9 @@ def test_convert(cli, tmp_path):
         "carom: run.xyz is there already; give another name, or --force to replace it\n",
     )
     assert json.loads(cli("convert run.gsd run.xyz --force --json")[1])["frames"] == 3
+    events = len(carom.load("run.gsd").events())
+    assert cli("convert run.gsd run.npz")[1].startswith(f"{events} events, ")
+    assert json.loads(cli("convert run.gsd run.npz --force --json")[1])["events"] == events
 
 
 def test_a_recording_is_not_lost_by_a_second_run(cli):

@@ -33,7 +33,9 @@ def pyav() -> ModuleType:
     try:
         import av
     except ImportError as missing:
-        msg = 'films need PyAV and Pillow: pip install "carom[video]"'
+        msg = (
+            'films need PyAV and Pillow: pip install "carom[video]"; a replay (.html) does without'
+        )
         raise InputError(msg) from missing
     return av
 
