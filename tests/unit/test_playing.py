@@ -95,5 +95,8 @@ def test_progress_shows_on_a_terminal_only(recording, monkeypatch, capsys):
 def test_mistakes_get_a_sentence(recording, capsys):
     assert command(recording, "--n", 5) == 2
     assert "a recording has no options, but there is '--n'" in capsys.readouterr().err
+    for words in (("--method", "tick"), ("--tick", 1), ("--seed", 3)):
+        assert command(recording, *words) == 2
+        assert f"has no options, but there is '{words[0]}'" in capsys.readouterr().err
     assert command("nowhere.gsd") == 1
     assert "nowhere.gsd" in capsys.readouterr().err

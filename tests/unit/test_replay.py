@@ -8,6 +8,7 @@ import re
 import zlib
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -267,6 +268,24 @@ def test_a_place_that_cannot_be_written(tmp_path):
     sim = carom.Simulation(scenes.build("two-balls"))
     with pytest.raises(FileError, match=r"cannot write .*a\.html: .*; check the folder"):
         write_replay(sim, tmp_path / "no" / "a.html", [0, 1])
+
+
+def test_what_cannot_be_written_is_said_before_the_work(tmp_path):
+    sim = carom.Simulation(scenes.build("two-balls"))
+    with pytest.raises(FileError, match="check the folder"):
+        write_replay(sim, tmp_path / "no" / "a.html", [0, 1])
+    assert sim.time == 0
+
+
+def test_a_recording_that_is_damaged_is_not_taken_for_a_page_that_cannot_be_written(tmp_path):
+    def frames(at):
+        msg = "run.gsd is damaged"
+        raise FileError(msg)
+
+    source = SimpleNamespace(scene=None, pace=1.0, frames=frames)
+    with pytest.raises(FileError, match=r"^run.gsd is damaged$"):
+        write_replay(source, tmp_path / "a.html", [0, 1])
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_full_disk_leaves_the_page_that_was_there(tmp_path, monkeypatch):

@@ -184,6 +184,8 @@ def show(
     number = whole("port", port)
     assert number is not None
     if scene.endswith(".gsd"):
+        names = {"--method": method != "exact", "--tick": tick, "--seed": seed}
+        words = [*words, *(name for name, given in names.items() if given)]
         show_recording(scene, words, host, number, no_browser=no_browser, json=json, quiet=quiet)
         return
     found = source(scene, words, whole("seed", seed), own_options(context))

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from carom.errors import InputError, unwritable
+from carom.errors import FileError, InputError, unwritable
 from carom.pictures.look import is_paper
 from carom.pictures.scales import Scales
 from carom.scene import Scene
@@ -121,11 +121,14 @@ def write_replay(
     if path.suffix.lower() != ".html":
         msg = f"a replay is a web page, so its name ends in .html; {path.name!r} does not"
         raise InputError(msg)
-    text = replay(source, times, color=color, title=title, speed=speed, progress=progress)
     part = path.with_name(f"{path.name}.part")  # no half file, whatever happens
     try:
+        part.touch()  # that it cannot be written is said before the work is done
+        text = replay(source, times, color=color, title=title, speed=speed, progress=progress)
         part.write_text(text, encoding="utf-8", newline="\n")
         part.replace(path)
+    except FileError:  # the recording's
+        raise
     except OSError as error:
         raise unwritable(path, error) from error
     finally:
