@@ -1,5 +1,11 @@
 """What can go wrong, each with one sentence: the value, the limit, the remedy."""
 
+import errno
+from pathlib import Path
+
+#: What the system says where there is no more room.
+FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
+
 
 class CaromError(Exception):
     """Base of every error carom raises on purpose."""
@@ -27,3 +33,11 @@ class CollapseError(RunError):
 
 class FileError(CaromError, OSError):
     """A file or port that cannot be used (exit status 1 on the command line)."""
+
+
+def unwritable(path: str | Path, error: OSError) -> FileError:
+    """The sentence about a file that the system does not let one write."""
+    remedy = "make room there" if error.errno in FULL else "check the folder and its permissions"
+    return FileError(
+        f"cannot write {path}: {error.strerror or error}; {remedy}, or choose another place"
+    )

@@ -29,12 +29,13 @@ def energy(state: State, world: World) -> float:
     return kinetic_energy(state) + potential_energy(state, world)
 
 
-def energy_sizes(state: State, world: World) -> float:
-    """Σ ½ m v² + Σ |m g·x|, a measure for errors of the energy where the two cancel."""
+def energy_and_size(state: State, world: World) -> tuple[float, float]:
+    """The energy, and Σ ½ m v² + Σ |m g·x|: a measure for its errors where the two cancel."""
+    kinetic = kinetic_energy(state)
     if not np.any(world.gravity):
-        return kinetic_energy(state)
-    heights = np.abs(state.position @ world.gravity)
-    return kinetic_energy(state) + float(np.sum(_masses(state) * heights))
+        return kinetic, kinetic
+    depths = _masses(state) * (state.position @ world.gravity)
+    return kinetic - float(np.sum(depths)), kinetic + float(np.sum(np.abs(depths)))
 
 
 def momentum(state: State) -> Floats:

@@ -199,10 +199,10 @@ class Motion:
         """Error of the energy, relative to what there was, summed over the changes between."""
         account, engine = self._account, self._engine
         taken = engine.dissipated if engine else 0.0
-        error = mechanics.energy(self.state, self.world) + taken - account.energy
+        energy, sizes = mechanics.energy_and_size(self.state, self.world)
+        error = energy + taken - account.energy
         given = abs(account.energy)
         # Where kinetic and potential energy cancel, the sum is no measure but their sizes are.
-        sizes = mechanics.energy_sizes(self.state, self.world)
         scale = given if given > 1e-9 * sizes else sizes
         return account.drift + (error / scale if scale > 0 else 0.0)
 

@@ -46,7 +46,7 @@ class Progress:
     Attributes
     ----------
     done, total : int
-        Pictures.
+        Pictures; those of a replay count twice, when they are there and when they are packed.
     time : float
         Simulated time of the last one.
     """
@@ -158,6 +158,13 @@ class _Job:
                 f"{self.earliest:.9g}; begin later"
             )
             raise InputError(msg)
+        last = self.until if self.until is not None else self.start
+        if self.is_recording and last > self.source.end:
+            msg = (
+                f"the last moment would be {last:.9g}, but the recording ends at "
+                f"{self.source.end:.9g}; end earlier"
+            )
+            raise InputError(msg)
         if not self.path.parent.is_dir():
             msg = f"there is no folder {self.path.parent}; make it first, or write elsewhere"
             raise FileError(msg)
@@ -266,7 +273,7 @@ def _replay(job: _Job) -> None:
         nonlocal done
         done += 1
         if job.progress is not None:
-            job.progress(Progress(done, len(times), time))
+            job.progress(Progress(done, 2 * len(times), time))
 
     write_replay(job.source, job.path, times, color=job.style.color, speed=job.speed, progress=show)
 
@@ -281,6 +288,7 @@ class _Artist:
             legend = Legend.of(first.state, job.style)
             self._words = Caption(_title(job.source), legend, job.style, step)
         self._begin(first)
+        self._scales = self._painter.scales
 
     def _begin(self, frame: Any) -> None:
         self._walls = frame.walls
@@ -290,6 +298,8 @@ class _Artist:
         """One picture."""
         if frame.walls != self._walls:  # changed by hand on the way
             self._begin(frame)
+            self._painter.scales = self._scales
+        self._scales.follow(frame.state, frame.world)
         return self._worded(self._painter.paint(frame.state), frame)
 
     def gamut(self, frame: Any) -> Pixels:

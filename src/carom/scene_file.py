@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from carom import scenes
 from carom.checks import nearest
-from carom.errors import FileError, InputError, UnknownNameError
+from carom.errors import FileError, InputError, UnknownNameError, unwritable
 from carom.rules import Smooth
 from carom.scene import Camera, Scene, Spheres
 from carom.walls import Box, Cylinder, Open, Periodic, Plane, Sphere, Wall
@@ -336,7 +336,4 @@ def save(scene: Scene, path: str | Path) -> None:
     try:
         Path(path).write_text(dump(scene), encoding="utf-8")
     except OSError as error:
-        msg = (
-            f"cannot write {path}: {error.strerror or error}; check the folder and its permissions"
-        )
-        raise FileError(msg) from error
+        raise unwritable(path, error) from error

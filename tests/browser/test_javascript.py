@@ -82,8 +82,8 @@ def test_protocol_on_both_sides(tmp_path):
     meters = Meters(
         clock=12.5, gravity=(0.0, 0.5, -9.81), kinetic=1.0, potential=2.0, dissipated=-3.0,
         drift=1e-16, speed=0.125, reached=0.1, momentum=(7.0, -8.0, 9.5), temperature=1.5,
-        epoch=4, scene=6, missed=11, overlap=0.25, playing=False, failed=True, twin=True,
-        reversed=True,
+        full_energy=20.0, full_speed=5.0, epoch=4, scene=6, missed=11, overlap=0.25,
+        playing=False, failed=True, twin=True, reversed=True,
     )  # fmt: skip
     about = {"title": "Σ “quoted”", "walls": [], "pace": 60}
     (tmp_path / "frame.bin").write_bytes(encode_frame(state, meters))
@@ -92,7 +92,7 @@ def test_protocol_on_both_sides(tmp_path):
         "frame": {
             "n": 2, "epoch": 4, "scene": 6, "playing": False, "failed": True,
             "twin": True, "reversed": True, "momentum": [7.0, -8.0, 9.5], "temperature": 1.5,
-            "missed": 11, "overlap": 0.25, "kinetic": 1.0,
+            "missed": 11, "overlap": 0.25, "kinetic": 1.0, "fullEnergy": 20.0, "fullSpeed": 5.0,
             "t": 0.1, "clock": 12.5, "gravity": [0.0, 0.5, -9.81],
             "potential": 2.0, "dissipated": -3.0, "drift": 1e-16, "collisions": 2**50 + 1,
             "wallCollisions": 3, "speed": 0.125, "reached": 0.1,

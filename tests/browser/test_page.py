@@ -221,6 +221,21 @@ def test_energy_colours_are_the_papers(show):
     assert "speed" in shown.text("legend")
 
 
+def test_scales_follow_a_gas_that_cools_and_begin_again_with_it(show):
+    sim = carom.Simulation(scenes.gas(n=60, packing_fraction=0.2))
+    sim.rule = carom.Smooth(0.7, contact_time=1e-4)
+    shown = show(sim)
+    assert shown.text("legend").split() == ["0", "speed", "2", "+"]
+    shown.js("carom.controls.ask(20)")
+    shown.wait("carom.look.full < 1")
+    shown.settle()
+    end = shown.wait("carom.look.full === carom.timeline.newest.fullSpeed && carom.look.full")
+    assert shown.text("legend").split() == ["0", "speed", f"{end:g}", "+"]
+    shown.js("carom.controls.ask(0.01)")
+    shown.page.keyboard.press("r")
+    shown.wait("carom.look.full === 2")
+
+
 def test_wire_spheres_are_seen_through(show):
     shown = show(still_life())
     shown.settle()

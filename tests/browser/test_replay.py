@@ -96,11 +96,10 @@ def test_balls_are_where_they_are_and_can_be_picked(play, tmp_path):
     shown.page.keyboard.press(" ")
     shown.page.get_by_role("slider", name="Place in the film").focus()
     shown.page.keyboard.press("End")
-    shown.wait("carom.timeline.t === carom.timeline.end")
-    time.sleep(0.3)
+    shown.wait("carom.drawn.t === carom.timeline.end")
     x, y, _ = where(shown, (-3 + 0.5 * 89 / 30, 0, 0))
     shown.page.mouse.click(x, y)
-    assert shown.js("carom.hands.selected") == 0
+    shown.wait("carom.hands.selected === 0")
     shown.wait("document.getElementById('inspector').innerText.includes('0.5000')")
     assert not shown.page.get_by_role("button", name="Delete this sphere").is_visible()
     # Nothing can be changed: no tool adds, no key deletes.

@@ -33,8 +33,8 @@ def test_no_energy_appears_or_vanishes(setting):
     state, world = setting.build()
     engine = ran(state, world)
     end = engine.state()
-    given, now = mechanics.energy(state, world), mechanics.energy(end, world)
-    size = max(mechanics.energy_sizes(state, world), mechanics.energy_sizes(end, world))
+    (given, before), (now, after) = (mechanics.energy_and_size(s, world) for s in (state, end))
+    size = max(before, after)
     assert abs(now + engine.dissipated - given) <= 1e-12 * size
     if not damped(world):
         assert abs(engine.dissipated) <= 1e-14 * size  # hops along walls, if any

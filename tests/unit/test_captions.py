@@ -52,6 +52,39 @@ def test_words_say_what_colors_mean():
     assert not changed[60:280].any()
 
 
+@pytest.mark.parametrize("size", [(120, 90), (240, 100), (640, 360)])
+def test_no_word_covers_another(size, monkeypatch):
+    boxes = []
+    write = Caption._text
+
+    def noted(self, draw, place, text, name, anchor, ink):
+        boxes.append(draw.textbbox(place, text, self._fonts[name], anchor))
+        write(self, draw, place, text, name, anchor, ink)
+
+    monkeypatch.setattr(Caption, "_text", noted)
+    for title in ("Gas", "A title far too long for any picture, however wide it may be drawn" * 2):
+        boxes.clear()
+        drawn(titled(title), color="energy", size=size)
+        for k, (left, top, right, bottom) in enumerate(boxes):
+            for other in boxes[:k]:
+                apart = left >= other[2] or right <= other[0] or top >= other[3]
+                # The title and the legend are drawn twice, on black and on white.
+                assert apart or bottom <= other[1] or (left, top, right, bottom) == other
+
+
+def test_long_titles_end_in_dots(said):
+    drawn(titled("An endless title " * 20), size=(320, 180))
+    assert said[0].endswith("...")
+    assert 10 < len(said[0]) < 60
+
+
+@pytest.mark.parametrize("size", [(16, 16), (64, 64), (16, 1000), (1000, 16)])
+@pytest.mark.parametrize("color", ["energy", "speed", "collisions", "species"])
+def test_words_in_tiny_pictures_do_no_harm(size, color):
+    picture = carom.Simulation(carom.scenes.phase_4()).picture(size=size, color=color)
+    assert picture.pixels.shape == (size[1], size[0], 3)
+
+
 @pytest.mark.parametrize("size", [(320, 180), (640, 480), (1920, 1080), (360, 640)])
 def test_words_stay_inside(size):
     sim = carom.Simulation(carom.scenes.phase_4())

@@ -26,7 +26,7 @@ def foretold(state, about, left, step):
 
 def hits_and_misses(sim, steps, step):
     """Of spheres that collide: how many are foretold to rounding, and how many are not."""
-    about = portrait(sim, sim.state, 1)
+    about = portrait(sim, sim.state, 1, (1.0, 1.0))
     right = wrong = 0
     for _ in range(steps):
         before = sim.state
@@ -84,7 +84,7 @@ def test_a_chain_of_collisions_is_foretold_in_order():
     spheres = carom.Spheres.of([(-3, 0, 0), (0, 0, 0), (3, 0, 0)], radius=0.5)
     spheres = replace(spheres, velocity=np.array([(10.0, 0, 0), (0, 0, 0), (0, 0, 0)]))
     state = carom.Simulation(carom.Scene(spheres)).state
-    about = portrait(carom.Simulation(carom.Scene(spheres)), state, 1)
+    about = portrait(carom.Simulation(carom.Scene(spheres)), state, 1, (1.0, 1.0))
     x, v = foretold(state, about, np.array([1, 2, 1]), 1.0)
     assert v.tolist() == [[0, 0, 0], [0, 0, 0], [10, 0, 0]]
     assert x == pytest.approx(np.array([(-1, 0, 0), (2, 0, 0), (9, 0, 0)]))
@@ -92,7 +92,7 @@ def test_a_chain_of_collisions_is_foretold_in_order():
 
 def test_what_no_count_asks_for_does_not_happen():
     sim = carom.Simulation(scenes.build("two-balls"))
-    about = portrait(sim, sim.state, 1)
+    about = portrait(sim, sim.state, 1, (1.0, 1.0))
     _, v = foretold(sim.state, about, np.zeros(2, np.int64), 10 * sim.pace)
     assert np.array_equal(v, sim.velocity)
     # And a count that nothing explains ends after some rounds.

@@ -81,8 +81,22 @@ def test_the_command_plays_a_recording(recording, monkeypatch, capsys):
     assert played[1][1]["open_browser"] is True
 
 
+def test_progress_shows_on_a_terminal_only(recording, monkeypatch, capsys):
+    monkeypatch.setattr(replaying, "play", lambda page, **options: None)
+    assert command(recording) == 0
+    assert capsys.readouterr().err == ""
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    assert command(recording) == 0
+    assert "Two balls" in capsys.readouterr().err
+    assert command(recording, "--quiet") == 0
+    assert capsys.readouterr().err == ""
+
+
 def test_mistakes_get_a_sentence(recording, capsys):
     assert command(recording, "--n", 5) == 2
     assert "a recording has no options, but there is '--n'" in capsys.readouterr().err
+    for words in (("--method", "tick"), ("--tick", 1), ("--seed", 3)):
+        assert command(recording, *words) == 2
+        assert f"has no options, but there is '{words[0]}'" in capsys.readouterr().err
     assert command("nowhere.gsd") == 1
     assert "nowhere.gsd" in capsys.readouterr().err

@@ -111,6 +111,9 @@ def test_convert(cli, tmp_path):
         "carom: run.xyz is there already; give another name, or --force to replace it\n",
     )
     assert json.loads(cli("convert run.gsd run.xyz --force --json")[1])["frames"] == 3
+    events = len(carom.load("run.gsd").events())
+    assert cli("convert run.gsd run.npz")[1].startswith(f"{events} events, ")
+    assert json.loads(cli("convert run.gsd run.npz --force --json")[1])["events"] == events
 
 
 def test_a_recording_is_not_lost_by_a_second_run(cli):
@@ -138,7 +141,7 @@ def test_a_recording_is_not_lost_by_a_second_run(cli):
         ("run --resume run.gsd", 2, "say how far run.gsd shall go on"),
         ("run gas --resume run.gsd --until 9", 2, "leave a scene and its options"),
         ("run --resume run.gsd --until 9 -o x.gsd", 2, "leave a scene and its options"),
-        ("run --resume run.gsd --until 0.5", 2, "until is 0.5, but the time is 1 already"),
+        ("run --resume run.gsd --until 0.5", 2, "but run.gsd ends at 1; give a later time"),
         ("run --resume no.gsd --until 1", 1, "cannot read no.gsd: No such file"),
         ("info text", 2, "text is no recording"),
         ("check text", 2, "text is no recording"),

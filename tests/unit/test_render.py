@@ -119,6 +119,13 @@ def test_a_recording_gives_the_same_film(tmp_path):
     assert all(distance(x, y) < 0.5 for x, y in zip(a, b, strict=True))
     with pytest.raises(InputError, match="be -1, but the recording begins at 0; begin later"):
         carom.render(recording, tmp_path / "a.mp4", begin=-1.0)
+    for name in ("c.mp4", "c.png", "c.html"):
+        with pytest.raises(InputError, match=r"be 2\.5, but the recording ends at 2; end earlier"):
+            carom.render(recording, tmp_path / name, until=2.5, **SMALL)
+        with pytest.raises(InputError, match="be 3, but the recording ends at 2; end earlier"):
+            carom.render(recording, tmp_path / name, begin=3.0, **SMALL)
+        assert not (tmp_path / name).exists()
+    carom.render(recording, tmp_path / "c.png", until=2.0, **SMALL)
     carom.render(recording, tmp_path / "a.png", until=1.5, **SMALL)
     sim = gas()
     sim.run(until=1.5)
@@ -322,10 +329,12 @@ def test_options_do_what_python_does(tmp_path):
         (["gas", "-o", "a.mp4", "--until", "1", "--duration", "1"], 2, "give only one of --until"),
         (["gas", "-o", "a.mp4", "--fps", "fast"], 2, "--fps must be a number, not 'fast'"),
         (
-            ["gas", "-o", "a.mp4", "--sped", "2"],
+            ["gas", "-o", "a.mp4", "--slowmotion", "2"],
             2,
-            "has no option '--sped'; did you mean '--speed'",
+            "has no option '--slowmotion'; did you mean '--slow-motion'",
         ),
+        (["gas", "-o", "a.mp4", "--slow-motion", "0"], 2, "--slow-motion is 0; it must be more"),
+        (["gas", "-o", "a.mp4", "--slow-motion", "very"], 2, "--slow-motion must be a number"),
         (["none.gsd", "-o", "a.mp4"], 1, "none.gsd"),
         (
             ["none.gsd", "-o", "a.mp4", "--n", "3"],

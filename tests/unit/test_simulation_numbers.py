@@ -96,6 +96,24 @@ class TestNumbers:
         assert sim.dissipated > 0.1
         assert abs(sim.energy_drift) < 1e-13
 
+    def test_drift_sums_the_kinetic_energy_once(self, monkeypatch):
+        sim = gas("exact", gravity=(0, 0, -1))
+        sim.run(until=0.5)
+        summed = []
+        once = mechanics._kinetic
+        monkeypatch.setattr(mechanics, "_kinetic", lambda *a: summed.append(a) or once(*a))
+        assert abs(sim.energy_drift) < 1e-13
+        assert len(summed) == 1
+
+    @pytest.mark.parametrize("gravity", [(0, 0, 0), (0.1, -2, 0.3)])
+    def test_energy_and_size(self, gravity):
+        sim = gas("exact", gravity=gravity)
+        state, world = sim.state, sim.world
+        potential = -state.mass * (state.position @ world.gravity)
+        energy, size = mechanics.energy_and_size(state, world)
+        assert energy == mechanics.energy(state, world)
+        assert size == pytest.approx(mechanics.kinetic_energy(state) + np.abs(potential).sum())
+
     @each_method
     def test_drift_is_never_nan(self, method):
         sim = carom.Simulation(method=method)

@@ -19,7 +19,7 @@ def meters(**changes):
     values = dict(
         clock=5.0, gravity=(0.0, 0.0, -1.0), kinetic=2.5, potential=1.5, dissipated=0.5,
         drift=3e-15, speed=0.25, reached=0.2, momentum=(7.0, 8.0, 9.0), temperature=1.25,
-        missed=4, overlap=0.125, epoch=7, scene=3,
+        missed=4, overlap=0.125, full_energy=20.0, full_speed=5.0, epoch=7, scene=3,
     )  # fmt: skip
     return Meters(**{**values, **changes})
 
@@ -37,10 +37,10 @@ def state():
 
 def test_frame_has_the_bytes_of_the_table(state):
     frame = encode_frame(state, meters())
-    start = 24 + 8 * 19
+    start = 24 + 8 * 21
     assert len(frame) == start + 28 * 3
     assert frame[:4] == b"CARO"
-    assert struct.unpack_from("<HHIIII", frame, 4) == (2, 1, 3, 7, 1, 3)
+    assert struct.unpack_from("<HHIIII", frame, 4) == (3, 1, 3, 7, 1, 3)
     assert struct.unpack_from("<19d", frame, 24) == (
         *(0.1, 5.0, 0.0, 0.0, -1.0, 2.5, 1.5, 0.5, 3e-15, 2.0**40, 9.0, 0.25, 0.2),
         *(7.0, 8.0, 9.0, 1.25, 4.0, 0.125),
@@ -67,7 +67,7 @@ def test_scene_has_the_bytes_of_the_table(state):
     state.mass[1] = math.inf
     message = encode_scene(state, 4, {"title": "é"})
     size = struct.unpack_from("<I", message, 16)[0]
-    assert struct.unpack_from("<HHII", message, 4) == (2, 2, 3, 0)
+    assert struct.unpack_from("<HHII", message, 4) == (3, 2, 3, 0)
     assert struct.unpack_from("<I", message, 20)[0] == 4
     assert size % 4 == 0
     assert json.loads(message[24 : 24 + size]) == {"title": "é"}

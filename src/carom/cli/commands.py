@@ -35,7 +35,7 @@ from carom.cli.resuming import (
 )
 from carom.cli.running import as_data, execute, goal, summary
 from carom.cli.sketching import sketch
-from carom.cli.source import parsed, source, whole
+from carom.cli.source import own_options, parsed, source, whole
 from carom.cli.story import TOLD, story
 from carom.cli.validating import validate
 from carom.errors import InputError, RunError
@@ -184,9 +184,11 @@ def show(
     number = whole("port", port)
     assert number is not None
     if scene.endswith(".gsd"):
+        names = {"--method": method != "exact", "--tick": tick, "--seed": seed}
+        words = [*words, *(name for name, given in names.items() if given)]
         show_recording(scene, words, host, number, no_browser=no_browser, json=json, quiet=quiet)
         return
-    found = source(scene, words, whole("seed", seed))
+    found = source(scene, words, whole("seed", seed), own_options(context))
     sim = found.simulation(method, parsed("tick", tick))
 
     def ready(view: LiveView) -> None:
@@ -245,7 +247,7 @@ def run(
         given = scene or context.args or seed or tick or method != "exact" or plan.asked
         found, sim = resumed(resume, refuse=bool(given), ends=(until, collisions, events))
     else:
-        found = source(scene, context.args, whole("seed", seed))
+        found = source(scene, context.args, whole("seed", seed), own_options(context))
     aim = goal(
         found.scene.pace,
         until=parsed("until", until),
@@ -298,7 +300,7 @@ def compare(
     quiet: Quiet = False,
 ) -> None:
     """Run a scene exactly and in the paper's ticks, and compare."""
-    found = source(scene, context.args, whole("seed", seed))
+    found = source(scene, context.args, whole("seed", seed), own_options(context))
     aim = goal(found.scene.pace, until=parsed("until", until))
     data = compare_both(found, aim, parsed("tick", tick), quiet=quiet or json)
     if json:

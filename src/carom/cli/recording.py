@@ -148,13 +148,12 @@ def convert(
         msg = f"{target} is there already; give another name, or --force to replace it"
         raise InputError(msg)
     with load(recording) as run, _progress("convert", quiet=quiet or json) as progress:
-        converted(run, target, progress)
-        frames = len(run)
+        many, what = converted(run, target, progress)
     size = target.stat().st_size
     if json:
-        report.write_json({"path": str(target), "frames": frames, "bytes": size})
+        report.write_json({"path": str(target), what: many, "bytes": size})
     elif not quiet:
-        line = f"{report.count(frames)} frames, {size_text(size)}, in {target}"
+        line = f"{report.count(many)} {what}, {size_text(size)}, in {target}"
         report.output().print(line, soft_wrap=True)
 
 

@@ -3,11 +3,11 @@
 from typing import Annotated, Any
 
 import typer
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
+from carom.checks import number
 from carom.cli import report
-from carom.cli.source import parsed, source, whole
+from carom.cli.source import own_options, parsed, source, whole
 from carom.errors import InputError
 from carom.record import load
 from carom.rendering import Progress as Progressed
@@ -38,8 +38,8 @@ def render_file(
     duration: Annotated[
         str | None, typer.Option(metavar="TIME", help="The same, counted from where it begins.")
     ] = None,
-    speed: Annotated[
-        str, typer.Option(metavar="X", help="Times the scene's own pace; 0.1 is slow motion.")
+    slow_motion: Annotated[
+        str, typer.Option(metavar="X", help="Times slower than the scene's own pace; 0.5: faster.")
     ] = "1",
     fps: Annotated[
         str | None, typer.Option(metavar="N", help="Pictures per second; 30, for a GIF 25.")
@@ -79,7 +79,7 @@ def render_file(
     if not output:
         msg = f"say where to write with -o, as in 'carom render {scene or 'gas'} -o film.mp4'"
         raise InputError(msg)
-    shown, label = _shown(scene, context.args, whole("seed", seed))
+    shown, label = _shown(scene, context, whole("seed", seed))
     first, last = parsed("from", begin), parsed("until", until)
     length = parsed("duration", duration)
     if length is not None:
@@ -87,10 +87,11 @@ def render_file(
             msg = "give only one of --until, --duration: a film has one end"
             raise InputError(msg)
         last = length + (getattr(shown, "start", 0.0) if first is None else first)
+    slower = number("--slow-motion", parsed("slow-motion", slow_motion), above=0)
     options: dict[str, Any] = {
         "begin": first,
         "until": last,
-        "speed": parsed("speed", speed),
+        "speed": 1 / slower,
         "fps": parsed("fps", fps),
         "size": sized(size),
         "camera": None if camera is None else _camera(camera),
@@ -139,12 +140,12 @@ def _camera(text: str) -> Camera:
     return Camera((x, y, z), (tx, ty, tz))
 
 
-def _shown(target: str, words: list[str], seed: int | None) -> tuple[Any, str]:
+def _shown(target: str, context: typer.Context, seed: int | None) -> tuple[Any, str]:
     """What is to be shown, and what it is called."""
     if not target.endswith(".gsd"):
-        found = source(target, words, seed)
+        found = source(target, context.args, seed, own_options(context))
         return found.simulation(), found.text
-    given = [*words, *([] if seed is None else ["--seed"])]
+    given = [*context.args, *([] if seed is None else ["--seed"])]
     if given:
         msg = f"{given[0]} is an option of scenes, not of recordings; leave it out"
         raise InputError(msg)
@@ -153,33 +154,24 @@ def _shown(target: str, words: list[str], seed: int | None) -> tuple[Any, str]:
 
 def _execute(shown: Any, path: str, options: dict[str, Any], label: str, *, quiet: bool) -> int:
     """Render with a progress bar on standard error, if somebody looks at it."""
-    console = report.notes()
-    drawn = 0
-    with Progress(
-        TextColumn("{task.description}", style="bold"),
-        BarColumn(bar_width=None),
-        TaskProgressColumn(),
-        TextColumn("{task.fields[shown]}", style="cyan"),
-        TimeRemainingColumn(compact=True),
-        console=console,
-        transient=True,
-        disable=quiet or not console.is_terminal,
-    ) as bar:
-        task = bar.add_task(label, total=None, shown="")
+    drawn, replay = 0, path.lower().endswith(".html")
+    with report.bar(quiet=quiet) as bar:
+        task = bar.add_task(label, total=None, note="")
 
         def show(now: Progressed) -> None:
             nonlocal drawn
-            drawn = now.done
-            text = f"picture {now.done:,} of {now.total:,}, time {now.time:.4g}"
-            bar.update(task, completed=now.done, total=now.total, shown=text)
+            drawn = now.done // 2 if replay else now.done
+            which = "" if replay else f"picture {now.done:,} of {now.total:,}, "
+            text = f"{which}time {now.time:.4g}"
+            bar.update(task, completed=now.done, total=now.total, note=text)
 
         try:
             render(shown, path, progress=show, **options)
         except KeyboardInterrupt:
             # Only films are kept in part; one that is there may be an old one.
-            if drawn and not path.lower().endswith(".html"):
+            if drawn and not replay:
                 held = "1 picture" if drawn == 1 else f"{drawn:,} pictures"
                 kept = f"Stopped by Ctrl-C; {path} holds {held} until then."
-                console.print(Text(kept, style="yellow"), soft_wrap=True)
+                bar.console.print(Text(kept, style="yellow"), soft_wrap=True)
             raise typer.Exit(INTERRUPTED) from None
     return max(1, drawn)

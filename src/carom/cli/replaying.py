@@ -26,7 +26,13 @@ def show_recording(
     with load(path) as run:
         title = run.scene.title if run.scene is not None else ""
         n, frames = len(run[0]), even_times(run)
-        page = replay(run, frames, title=title or path)
+        with report.bar(quiet=quiet or json) as bar:
+            task = bar.add_task(title or path, total=2 * len(frames), note="")  # read, then packed
+
+            def tell(time: float) -> None:
+                bar.update(task, advance=1, note=f"time {time:.4g}")
+
+            page = replay(run, frames, title=title or path, progress=tell)
 
     def ready(address: str) -> None:
         if json:

@@ -9,7 +9,7 @@ import typer
 
 from carom.cli import report
 from carom.cli.recording import size_text
-from carom.cli.source import Source, whole
+from carom.cli.source import Source, parsed, whole
 from carom.errors import InputError
 from carom.event_file import load_events
 from carom.event_file.source import ENDINGS
@@ -128,7 +128,7 @@ def resumed(path: Path, *, refuse: bool, ends: tuple[Any, ...]) -> tuple[Source,
     refuse : bool
         Whether something is given that only a new run can have.
     ends : tuple
-        The goals, of which one must be given.
+        The goals, of which one must be given: a time, and counts.
 
     Raises
     ------
@@ -144,6 +144,11 @@ def resumed(path: Path, *, refuse: bool, ends: tuple[Any, ...]) -> tuple[Source,
     if all(end is None for end in ends):
         msg = f"say how far {path} shall go on, with --until, --collisions or --events"
         raise InputError(msg)
+    until = parsed("until", ends[0])
+    with load(path) as run:
+        if until is not None and until < run.end:
+            msg = f"--until is {until:.9g}, but {path} ends at {run.end:.9g}; give a later time"
+            raise InputError(msg)
     sim = Simulation.resume(path)
     scene = sim.scene or Scene(Spheres.of(np.zeros((0, 3))))
     return Source(str(path), {}, scene), sim

@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import typer
+
 from carom import scenes
 from carom.checks import nearest, number
 from carom.errors import InputError, UnknownNameError
@@ -12,13 +14,6 @@ from carom.methods import METHODS, TICKS_PER_SECOND
 from carom.scene import Scene
 from carom.scene_file import load
 from carom.simulation import Simulation
-
-#: Options of the commands themselves, so that a misspelt one gets the right suggestion.
-COMMAND_OPTIONS = (
-    "until", "collisions", "events", "method", "tick", "seed", "json", "quiet",
-    "debug", "port", "host", "no-browser", "help", "output", "every", "checkpoint-every", "force",
-    "record-events", "resume",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -53,7 +48,14 @@ class Source:
         return Simulation(self.scene, method=method, tick=step)  # type: ignore[arg-type]
 
 
-def source(target: str, words: Sequence[str], seed: int | None) -> Source:
+def own_options(context: typer.Context) -> list[str]:
+    """Names of the options that a command has itself, without their dashes."""
+    parts = context.command.params
+    names = [name for part in parts for name in (*part.opts, *part.secondary_opts)]
+    return [name.removeprefix("--") for name in names if name.startswith("--")]
+
+
+def source(target: str, words: Sequence[str], seed: int | None, own: Sequence[str] = ()) -> Source:
     """Find what the command line names.
 
     Parameters
@@ -64,6 +66,8 @@ def source(target: str, words: Sequence[str], seed: int | None) -> Source:
         What is left of the command line: ``--name value`` or ``--name=value``.
     seed : int, optional
         Scenes without randomness do not need it.
+    own : sequence of str
+        The command's `own_options`, so that a misspelt one gets the right suggestion.
 
     Raises
     ------
@@ -85,13 +89,17 @@ def source(target: str, words: Sequence[str], seed: int | None) -> Source:
         scene = load(target)
         return Source(target, {}, scene if seed is None else replace(scene, seed=seed))
     known = {option.name: option for option in scenes.options(target)}
-    given = {name: known[name].parse(text) for name, text in _pairs(target, words, known).items()}
+    given = {
+        name: known[name].parse(text) for name, text in _pairs(target, words, known, own).items()
+    }
     if seed is not None and "seed" in known:
         given["seed"] = seed
     return Source(target, given, scenes.build(target, given))
 
 
-def _pairs(target: str, words: Sequence[str], known: dict[str, scenes.Option]) -> dict[str, str]:
+def _pairs(
+    target: str, words: Sequence[str], known: dict[str, scenes.Option], own: Sequence[str]
+) -> dict[str, str]:
     """Sort loose words into names and values."""
     pairs: dict[str, str] = {}
     rest = list(words)
@@ -104,7 +112,7 @@ def _pairs(target: str, words: Sequence[str], known: dict[str, scenes.Option]) -
         name = dashed.replace("-", "_")
         if name not in known:
             names = [option.replace("_", "-") for option in known]
-            msg = _unknown(target, dashed, names)
+            msg = _unknown(target, dashed, names, own)
             raise UnknownNameError(msg)
         if not equals:
             if rest and not rest[0].startswith("--"):
@@ -118,8 +126,8 @@ def _pairs(target: str, words: Sequence[str], known: dict[str, scenes.Option]) -
     return pairs
 
 
-def _unknown(target: str, name: str, names: list[str]) -> str:
-    hint = nearest(name, [*names, *COMMAND_OPTIONS])
+def _unknown(target: str, name: str, names: list[str], own: Sequence[str]) -> str:
+    hint = nearest(name, [*names, *own])
     if "did you mean" in hint:
         hint = hint.replace("'", "'--", 1)
     else:

@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
 from carom.cli import report
@@ -86,26 +85,16 @@ def _run(
     quiet: bool,
 ) -> tuple[list[dict[str, Any]], bool]:
     """Work through all checks, with a bar on standard error if somebody looks at it."""
-    console = report.notes()
     done: list[dict[str, Any]] = []
     costs = {check.name: suite.seconds(check, mode) for check in checks}
-    with Progress(
-        TextColumn("{task.description}", style="bold"),
-        BarColumn(bar_width=None),
-        TaskProgressColumn(),
-        TextColumn("{task.fields[last]}", style="cyan"),
-        TimeRemainingColumn(compact=True),
-        console=console,
-        transient=True,
-        disable=quiet or not console.is_terminal,
-    ) as bar:
-        task = bar.add_task("validate", total=sum(costs.values()), last="")
+    with report.bar(quiet=quiet) as bar:
+        task = bar.add_task("validate", total=sum(costs.values()), note="")
         try:
             for check in suite.results(checks, mode):
                 done.append(check)
                 if folder:
                     results.write(folder, results.report(done, before))
-                bar.update(task, advance=costs[check["check"]], last=check["check"])
+                bar.update(task, advance=costs[check["check"]], note=check["check"])
         except KeyboardInterrupt:
             return done, True
     return done, False

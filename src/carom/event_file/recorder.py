@@ -11,7 +11,7 @@ from typing import Any, Protocol, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.errors import FileError
+from carom.errors import unwritable
 from carom.event_file.layout import FORMAT, GROUP, KINDS, MEANING, VERSION, carom_version, packed
 from carom.event_file.npz import NpzSink
 from carom.event_file.parquet import ParquetSink
@@ -54,8 +54,7 @@ class OpenFile:
             yield
         except OSError as error:
             self._sink = None
-            msg = f"cannot write {self.path}: {error.strerror or error}"
-            raise FileError(msg) from error
+            raise unwritable(self.path, error) from error
 
     def add(self, records: NDArray[Any]) -> None:
         """Take events; whole groups are written."""

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from carom.errors import FileError, InputError
+from carom.errors import InputError, unwritable
 from carom.markup import html_table
 from carom.observe.estimate import Estimate
 
@@ -209,8 +209,7 @@ class Table:
                 arrays: dict[str, Any] = {**self.columns, "about": json.dumps(self._about())}
                 np.savez(file, **arrays)
         except OSError as error:
-            msg = f"cannot write {file}: {error.strerror or error}"
-            raise FileError(msg) from error
+            raise unwritable(file, error) from error
 
     def _write_csv(self, file: Path) -> None:
         units = [f"{name} in {unit}" for name, unit in self.units.items()]

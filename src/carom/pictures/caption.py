@@ -16,6 +16,8 @@ from carom.pictures.painter import Pixels, Style
 from carom.state import Floats, State
 
 LEAST = 11.5  #: size of letters in pixels; smaller ones run together
+LINE = 1.3  #: sizes of its letters from line to line, at least
+DIGITS = 3  #: of the time, before the point, for which a long title leaves room
 HUES = 5  #: rows of the energy scale: a sphere keeps its own hue
 
 
@@ -138,7 +140,9 @@ class Caption:
         image = self._image.fromarray(pixels)
         draw = self._draw.Draw(image)
         edge = 28 * self._unit
-        self._text(draw, (edge, edge), self._title, "title", "lt", self._ink)
+        clock = self._fonts["clock"].getlength(f"time {10**DIGITS:.{self._decimals}f}")
+        title = _fitted(self._title, self._fonts["title"], image.size[0] - 3 * edge - clock)
+        self._text(draw, (edge, edge), title, "title", "lt", self._ink)
         self._draw_legend(draw, edge, image.size[1] - edge, full)
         return np.asarray(image)
 
@@ -154,7 +158,8 @@ class Caption:
 
     def _draw_legend(self, draw: Any, left: float, bottom: float, full: float) -> None:
         unit, legend = self._unit, self._legend
-        line = 25 * unit
+        font = self._fonts["legend"]
+        line = max(25 * unit, LINE * font.size)
         for k, (color, text) in enumerate(reversed(legend.dots)):
             middle, r = bottom - (k + 0.5) * line, 7 * unit
             spot = (left, middle - r, left + 2 * r, middle + r)
@@ -162,21 +167,32 @@ class Caption:
             self._text(draw, (left + 24 * unit, middle), text, "legend", "lm", self._ink)
         if not legend.bars:
             return
-        width = 250 * unit
-        self._text(draw, (left, bottom), "0", "legend", "ls", self._ink)
-        middle = left + width / 2
-        self._text(draw, (middle, bottom), legend.name, "legend", "ms", self._ink)
         end = short(full) if legend.name.startswith("collisions") else f"{short(full)} +"
+        width = max(250 * unit, font.getlength(f"0  {legend.name}  {end}"))
+        self._text(draw, (left, bottom), "0", "legend", "ls", self._ink)
+        # In the middle of what the numbers leave free.
+        middle = left + (width + font.getlength("0") - font.getlength(end)) / 2
+        self._text(draw, (middle, bottom), legend.name, "legend", "ms", self._ink)
         self._text(draw, (left + width, bottom), end, "legend", "rs", self._ink)
         high = (15 if len(legend.bars) == 1 else 9) * unit
         top = bottom - line - len(legend.bars) * high
         for row, bar in enumerate(legend.bars):
             upper, lower = round(top + row * high), round(top + (row + 1) * high) - 1
-            for k, color in enumerate(bar):
-                x = left + width * np.array([k, k + 1]) / len(bar)
-                draw.rectangle((round(x[0]), upper, round(x[1]) - 1, lower), _rgb(color))
+            ends = round(left), round(left + width)
+            for x in range(*ends):
+                color = bar[(x - ends[0]) * len(bar) // (ends[1] - ends[0])]
+                draw.line((x, upper, x, lower), _rgb(color))
         frame = (round(left) - 1, round(top) - 1, round(left + width), lower + 1)
         draw.rectangle(frame, None, self._faint, max(1, round(unit)))
+
+
+def _fitted(text: str, font: Any, room: float) -> str:
+    """As much of a text as there is room for in pixels; dots say where some is missing."""
+    if font.getlength(text) <= room:
+        return text
+    while text and font.getlength(f"{text}...") > room:
+        text = text[:-1].rstrip()
+    return f"{text}..." if len(text) > 3 else ""
 
 
 class _Overlay:

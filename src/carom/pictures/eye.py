@@ -11,6 +11,7 @@ from carom.state import Floats
 
 HALF_ANGLE = math.tan(math.radians(17))  #: half the picture's height at distance 1
 STEEPEST = 1.54  #: radians; at a right angle left and right lose their meaning
+PLUMB = 1e-9  #: radians from straight down or up, where there is no direction to look in
 AZIMUTH, HEIGHT = -0.42, 0.3  #: radians: two walls and the floor are seen
 FREE = 0.92  #: of the picture, for what must fit
 
@@ -90,7 +91,9 @@ def look(room: Room, gravity: Floats, size: tuple[int, int], camera: Viewpoint |
         line = np.array(camera.position) - target
         distance = math.hypot(*line)  # which does not underflow
         height = math.asin(max(-1.0, min(1.0, float(line @ above) / distance)))
-        azimuth = math.atan2(line @ side, -(line @ forward))
+        level = float(line @ side), -float(line @ forward)
+        # Straight down, and nearly so, no direction is left but the sign of a zero.
+        azimuth = math.atan2(*level) if math.hypot(*level) > PLUMB * distance else 0.0
         right, up, back = _axes(above, azimuth, max(-STEEPEST, min(STEEPEST, height)))
     return Eye(target + back * distance, right, up, -back, above, distance, reach, size)
 

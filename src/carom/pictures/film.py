@@ -10,7 +10,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from carom.errors import FileError, InputError
+from carom.errors import FileError, InputError, unwritable
 from carom.pictures.caption import pillow
 from carom.pictures.painter import Pixels
 
@@ -33,7 +33,9 @@ def pyav() -> ModuleType:
     try:
         import av
     except ImportError as missing:
-        msg = 'films need PyAV and Pillow: pip install "carom[video]"'
+        msg = (
+            'films need PyAV and Pillow: pip install "carom[video]"; a replay (.html) does without'
+        )
         raise InputError(msg) from missing
     return av
 
@@ -112,7 +114,7 @@ class Film:
         self._pending: Future[None] | None = None
 
     def _refused(self, error: OSError) -> FileError:
-        return FileError(f"cannot write {self._path}: {error.strerror}")
+        return unwritable(self._path, error)
 
     def _take_palette(self, pixels: Pixels) -> None:
         self._palette = pillow()[0].fromarray(pixels).quantize(256, dither=0)

@@ -9,14 +9,11 @@ from numpy.typing import NDArray
 
 from carom.color import SPECIES, Colors
 from carom.state import Floats, State
-from carom.world import World
 
 Color = Literal["energy", "speed", "collisions", "own", "species"]
 Theme = Literal["dark", "light"]
 COLORS: tuple[Color, ...] = get_args(Color)
 
-#: Kinetic energy at which the paper's saturation KE/5 reaches 100 percent.
-PAPER_FULL = 500.0
 #: From slow to fast, and from few collisions to many.
 SPEEDS = (0x4059D6, 0x4C8FE6, 0x55BCCB, 0xB4D98A, 0xFFE65A)
 COLLISIONS = (0x5B2A86, 0x9C2F7F, 0xDB4F5F, 0xF98E4B, 0xFDE7A0)
@@ -132,38 +129,3 @@ def full_count(counts: NDArray[np.uint32]) -> float:
 def is_paper(scene: Any) -> bool:
     """Whether a scene (or None) has the look of the paper."""
     return scene is not None and bool(scene.wire) and scene.color == "energy"
-
-
-def scales(state: State, world: World, *, paper: bool) -> dict[str, float]:
-    """Kinetic energy of full saturation, and where the scales of speed and gravity end.
-
-    Scenes in the paper's look keep the paper's number: saturation is KE/5 percent, so full at
-    500. Others have other units: there it is three times the mean energy of a free sphere,
-    rounded to 1, 2 or 5 times a power of ten. Where little moves yet, the energy of falling
-    through the scene counts.
-    """
-    free = ~state.fixed
-    if not free.any():
-        return {"full_energy": 1.0, "full_speed": 1.0, "full_gravity": 1.0}
-    mass, squares = state.mass[free], (state.velocity[free] ** 2).sum(axis=1)
-    fall = float(np.ptp(state.position[free] @ world.gravity))
-    energy = max(float((mass * squares).mean()) / 2, float(mass.mean()) * fall / 3)
-    speed = math.sqrt(max(float(squares.mean()), fall))
-    # A sphere of the mean energy then rises a fifth of the way across the world.
-    across = float(np.ptp(state.position, axis=0).max()) or float(state.radius.max())
-    strength = max(2.5 * float(squares.mean()) / across, 2 * float(np.abs(world.gravity).max()))
-    return {
-        "full_energy": PAPER_FULL if paper else _round(3 * energy),
-        "full_speed": _round(2 * speed),
-        "full_gravity": _round(strength),
-    }
-
-
-def _round(value: float) -> float:
-    """Round to the nearest of 1, 2, 5 times a power of ten; 1 for 0."""
-    if value <= 0 or not math.isfinite(value):
-        return 1.0
-    power = 10.0 ** math.floor(math.log10(value))
-    return float(
-        min((1.0, 2.0, 5.0, 10.0), key=lambda step: abs(math.log(value / power / step))) * power
-    )

@@ -21,10 +21,10 @@ from carom.pictures.look import (
     full_count,
     is_paper,
     parts,
-    scales,
     some_colors,
 )
 from carom.pictures.room import Room
+from carom.pictures.scales import Scales
 from carom.state import Floats, State
 from carom.world import World
 
@@ -96,19 +96,24 @@ class Style:
 class Painter:
     """Paints states of one world from one place.
 
-    The first state says what there is to see and where the scales of colours end.
+    The first state says what there is to see.
 
     Parameters
     ----------
     state : State
     world : World
     style : Style
+
+    Attributes
+    ----------
+    scales : Scales
+        Of colours; they end where the first state needs it, until they are told to follow others.
     """
 
     def __init__(self, state: State, world: World, style: Style) -> None:
         self.style = style
-        ends = scales(state, world, paper=style.paper)
-        self._full = ends["full_speed" if style.color == "speed" else "full_energy"]
+        self.scales = Scales(style.paper)
+        self.scales.follow(state, world)
         self._period = world.period
         self.room = Room.of(state, world)
         self.eye = look(self.room, world.gravity, style.size, style.camera)
@@ -127,7 +132,10 @@ class Painter:
 
     def end_of_scale(self, state: State) -> float:
         """Energy, speed or number of collisions at the end of the scale of colours."""
-        return full_count(state.collision_count) if self.style.color == "collisions" else self._full
+        if self.style.color == "collisions":
+            return full_count(state.collision_count)
+        energy, speed = self.scales.ends
+        return speed if self.style.color == "speed" else energy
 
     def gamut(self, state: State) -> list[Pixels]:
         """Pictures of a state in all the colours that its spheres may take."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from carom.errors import FileError, InputError
+from carom.errors import InputError, unwritable
 from carom.pictures.caption import Caption, Legend
 from carom.pictures.painter import Painter, Pixels, Style
 from carom.pictures.png import png
@@ -48,8 +48,7 @@ class Picture:
         except OSError as error:
             with suppress(OSError):
                 part.unlink(missing_ok=True)
-            msg = f"cannot write {target}: {error.strerror}"
-            raise FileError(msg) from error
+            raise unwritable(target, error) from error
 
     def _repr_png_(self) -> bytes:
         return png(self.pixels)

@@ -94,6 +94,19 @@ def extent(state: State) -> tuple[Floats, Floats]:
     return (state.position - r).min(axis=0), (state.position + r).max(axis=0)
 
 
+def lowest(state: State, world: World, above: Floats) -> float:
+    """How high, along a unit vector, the lowest place is that walls let spheres reach.
+
+    Where no wall is below them, that of the spheres themselves.
+    """
+    walls = world.walls
+    low, high, _ = _ends(state, world, walls[walls["kind"] == PLANE])
+    for kind, axes in ((SPHERE, slice(0, 3)), (CYLINDER, slice(0, 2))):
+        for radius in walls["offset"][walls["kind"] == kind]:
+            low[axes], high[axes] = -radius, radius
+    return float(np.minimum(low * above, high * above).sum())
+
+
 def _ends(state: State, world: World, planes: NDArray[np.void]) -> tuple[Floats, Floats, bool]:
     """Where the world ends along each axis: at walls, at the period, or where spheres are."""
     low, high = extent(state)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from carom.checks import nearest
-from carom.errors import FileError, InputError, UnknownNameError
+from carom.errors import FileError, InputError, UnknownNameError, unwritable
 from carom.event_file.layout import carom_version, packed
 from carom.event_file.recorder import OpenFile, about_file
 from carom.event_file.source import ENDINGS
@@ -20,7 +20,7 @@ from carom.walls import wall_names
 Progress = Callable[[int, int], object]  #: frames done, frames in all
 
 
-def convert(run: Recording, path: str | Path, progress: Progress | None = None) -> None:
+def convert(run: Recording, path: str | Path, progress: Progress | None = None) -> tuple[int, str]:
     """Write a recording in another format, by the end of the name.
 
     Parameters
@@ -31,6 +31,12 @@ def convert(run: Recording, path: str | Path, progress: Progress | None = None) 
         hold the events, see `carom.load_events`.
     progress : callable, optional
         ``(done, all)``, called after each frame.
+
+    Returns
+    -------
+    many : int
+    what : str
+        What was written: "frames" or "events".
 
     Raises
     ------
@@ -46,13 +52,13 @@ def convert(run: Recording, path: str | Path, progress: Progress | None = None) 
         raise UnknownNameError(msg)
     part = target.with_stem(f"{target.stem}.part")  # no file is cut short, or lost for a bad one
     try:
-        write(run, part, progress or (lambda done, total: None))
+        done = write(run, part, progress or (lambda done, total: None))
         part.replace(target)
+        return done
     except FileError as error:  # of the events' writer, which knows the other name only
         raise FileError(str(error).replace(str(part), str(target))) from error
     except OSError as error:
-        msg = f"cannot write {target}: {error.strerror or error}"
-        raise FileError(msg) from error
+        raise unwritable(target, error) from error
     finally:
         part.unlink(missing_ok=True)
 
@@ -68,10 +74,11 @@ def _counted(run: Recording, progress: Progress) -> Iterator[Frame]:
 COLUMNS = "type:I:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1:id:I:1"
 
 
-def _xyz(run: Recording, path: Path, progress: Progress) -> None:
+def _xyz(run: Recording, path: Path, progress: Progress) -> tuple[int, str]:
     with path.open("w", encoding="ascii") as file:
         for frame in _counted(run, progress):
             file.write(_xyz_frame(frame))
+    return len(run), "frames"
 
 
 def _xyz_frame(frame: Frame) -> str:
@@ -93,7 +100,7 @@ def _xyz_frame(frame: Frame) -> str:
 # H5MD 1.1, de Buyl et al., Comput. Phys. Commun. 185, 1546 (2014), doi:10.1016/j.cpc.2014.01.018.
 
 
-def _h5md(run: Recording, path: Path, progress: Progress) -> None:
+def _h5md(run: Recording, path: Path, progress: Progress) -> tuple[int, str]:
     try:
         import h5py
     except ImportError as error:
@@ -118,6 +125,7 @@ def _h5md(run: Recording, path: Path, progress: Progress) -> None:
         ):
             group[name] = values
         _h5md_frames(group, run, progress)
+    return len(run), "frames"
 
 
 def _h5md_head(file: Any) -> None:
@@ -153,7 +161,7 @@ def _h5md_frames(group: Any, run: Recording, progress: Progress) -> None:
 # Event files, docs/events.md.
 
 
-def _events(run: Recording, path: Path, progress: Progress) -> None:
+def _events(run: Recording, path: Path, progress: Progress) -> tuple[int, str]:
     with closing(OpenFile(path)) as file:
         _start(file, run)
         for k in range(1, len(run)):
@@ -162,6 +170,7 @@ def _events(run: Recording, path: Path, progress: Progress) -> None:
             file.add(run.told(k - 1))
             file.about["end"] = _so_far(file, run[k])
             progress(k + 1, len(run))
+    return file.count, "events"
 
 
 def _start(file: OpenFile, run: Recording) -> None:
@@ -197,7 +206,7 @@ def _so_far(file: OpenFile, frame: Frame) -> dict[str, Any]:
     return {"events": file.count, "time": frame.time, **counts}
 
 
-FORMATS: dict[str, Callable[[Recording, Path, Progress], None]] = {
+FORMATS: dict[str, Callable[[Recording, Path, Progress], tuple[int, str]]] = {
     ".xyz": _xyz,
     ".h5": _h5md,
     **dict.fromkeys(ENDINGS, _events),

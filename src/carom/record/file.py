@@ -155,5 +155,5 @@ def _opened(path: Path) -> Any:
         if not path.read_bytes()[:8].startswith(MAGIC.to_bytes(8, "little")):
             msg = f"{path} is no recording (no GSD file); give one that carom has recorded"
             raise InputError(msg) from None
-        msg = f"{path} is cut short or damaged ({error}); take another copy"
-        raise Damaged(msg) from None
+        msg = f"{path} is cut short or damaged: its index cannot be read; take another copy"
+        raise Damaged(msg) from error

@@ -1,7 +1,6 @@
 """A thread that writes chunks to a file, so that the engine need not wait for the disk."""
 
 import atexit
-import errno
 import math
 import queue
 import threading
@@ -12,7 +11,7 @@ from typing import IO, Any
 
 from numpy.typing import NDArray
 
-from carom.errors import FileError
+from carom.errors import FULL, FileError
 from carom.event_file.layout import carom_version
 from carom.record import layout
 from carom.record.container import Container, create
@@ -21,7 +20,6 @@ from carom.record.container import Container, create
 WAITING = 64 * 2**20
 FRAMES_WAITING = 256  #: frames that may wait, however small: a kill loses them
 GATHERING = 0.1  #: seconds in which frames gather before they are committed; a kill loses them
-FULL = (errno.ENOSPC, errno.EDQUOT)
 _END, _CLOSE = "end of frame", "close"
 
 
@@ -130,7 +128,7 @@ class Writer:
     def _refusal(self, error: Exception) -> FileError:
         reason = getattr(error, "strerror", None) or str(error) or type(error).__name__
         full = getattr(error, "errno", None) in FULL
-        remedy = "make room on the disk" if full else "check the folder and its rights"
+        remedy = "make room there" if full else "check the folder and its permissions"
         return FileError(f"cannot write {self.path}: {reason}; {self._safe or remedy}")
 
     # In the thread.

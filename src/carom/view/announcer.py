@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from carom.errors import CaromError
+from carom.pictures.look import is_paper
+from carom.pictures.scales import Scales
 from carom.view.portrait import portrait
 from carom.view.protocol import Meters, encode_frame, encode_scene, encode_text
 from carom.view.snapshot import Snapshot
@@ -40,18 +42,20 @@ class Announcer:
         self._readings: tuple[Reading, ...] = ()
         self._read_at = self._walls_at = -math.inf
         self._read_epoch = -1
+        self._scales, self._scales_of = Scales(paper=False), (-1, math.inf)
         self._notes: dict[str, tuple[int, str]] = {}
 
     def snapshot(self, *, playing: bool, speed: float, reached: float, failure: str) -> Snapshot:
         """Everything a page may be sent now."""
         stage, clock = self._stage, time.perf_counter()
+        self._read(clock, playing)
+        energy, speed_end = self._scales.ends
         if self._described != stage.epoch:
             self._described = stage.epoch
             self._scene_number += 1
             state = stage.sim.state
-            about = portrait(stage.sim, state, stage.key)
+            about = portrait(stage.sim, state, stage.key, self._scales.ends)
             self._scene = encode_scene(state, self._scene_number, about)
-        self._read(clock, playing)
         gx, gy, gz = stage.sim.world.gravity.tolist()
         frames = tuple(
             encode_frame(
@@ -67,6 +71,8 @@ class Announcer:
                     temperature=reading.temperature,
                     missed=reading.missed,
                     overlap=reading.overlap,
+                    full_energy=energy,
+                    full_speed=speed_end,
                     speed=speed,
                     reached=reached,
                     epoch=stage.epoch,
@@ -116,6 +122,15 @@ class Announcer:
             return
         self._read_at, self._read_epoch = clock, stage.epoch
         self._readings = tuple(_reading(sim, stage.twin is not None) for sim in stage.shown)
+        self._follow()
+
+    def _follow(self) -> None:
+        """Let scales follow the motion; where it begins again, or another does, they do, too."""
+        stage, sim = self._stage, self._stage.sim
+        key, since = self._scales_of
+        if stage.key != key or sim.time <= since:
+            self._scales, self._scales_of = Scales(is_paper(sim.scene)), (stage.key, sim.time)
+        self._scales.follow(sim.state, sim.world)
 
     def _read_walls(self, clock: float, playing: bool) -> None:
         stage = self._stage

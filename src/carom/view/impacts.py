@@ -9,6 +9,7 @@ misses: so only size, never truth, hangs on it.
 arrives at the same bits.
 """
 
+import itertools
 from collections.abc import Sequence
 from typing import Any
 
@@ -20,6 +21,7 @@ from carom.world import PLANE
 
 LATE = 1.1  #: of the time between frames: an impact that seems due a little later has happened too
 ROUNDS = 32  #: of impacts between two frames; later ones are not foretold
+PORTION = 2**18  #: pairs that are looked at together: they must fit into the processor's cache
 STRIPS = 256.0  #: where there is no period; strips that many further on are the same again
 
 Indices = NDArray[np.int64]
@@ -98,22 +100,32 @@ class Impacts:
         return np.concatenate(found, axis=1)
 
     def _sweep(self, x: Floats, reach: Floats, axis: int, names: Indices) -> list[Indices]:
-        period = np.array([[length or np.inf] for length in self._period])
+        period = [length or np.inf for length in self._period]
         low, high = x[axis] - reach, x[axis] + reach
         order = np.argsort(low, kind="stable")
         # Behind the last sphere come all once more, one period on.
-        low = np.concatenate([low[order], low[order] + period[axis]])
-        high, order = high[order], np.concatenate([order, order])
+        low, high = np.concatenate([low[order], low[order] + period[axis]]), high[order]
+        order = np.concatenate([order, order])
+        x, reach, names = x[:, order], reach[order], names[order]
         here = np.arange(len(high))
+        # Those that follow, up to the first that begins behind the end; at the seam it may be late.
+        end = np.searchsorted(np.maximum.accumulate(low), high)
+        many = np.minimum(end, here + len(high)) - here - 1
+        others = [k for k in range(3) if k != axis]
         found = []
-        for ahead in range(1, len(high)):
-            here = here[low[here + ahead] < high[here]]
-            if len(here) == 0:
-                break
-            i, j = order[here], order[here + ahead]
-            gap, both = np.abs(x[:, i] - x[:, j]), reach[i] + reach[j]
-            close = ((gap < both) | (gap > period - both)).all(axis=0)
-            found.append(np.sort([names[i[close]], names[j[close]]], axis=0))
+        for some in _portions(many):
+            i = np.repeat(here[some], many[some])
+            j = (
+                i
+                + 1
+                + np.arange(len(i))
+                - np.repeat(np.cumsum(many[some]) - many[some], many[some])
+            )
+            for k in (*others, axis):
+                gap, both = np.abs(x[k, i] - x[k, j]), reach[i] + reach[j]
+                close = (gap < both) | (gap > period[k] - both)
+                i, j = i[close], j[close]
+            found.append(np.sort([names[i], names[j]], axis=0))
         return found
 
     def _meetings(
@@ -206,6 +218,13 @@ def _strips(x: Floats, reach: Floats, length: float) -> list[Indices]:
     strip = np.mod(first[who] + more, count)
     order = np.argsort(strip, kind="stable")
     return np.split(who[order], np.flatnonzero(np.diff(strip[order])) + 1)
+
+
+def _portions(many: Indices) -> list[slice]:
+    """Slices of rows with `PORTION` pairs in all, or one row; `many`: the pairs of each row."""
+    rank = np.cumsum(many) // PORTION
+    cuts = [0, *(np.flatnonzero(np.diff(rank)) + 1).tolist(), len(many)]
+    return [slice(a, b) for a, b in itertools.pairwise(cuts)]
 
 
 def _first(t: Floats, i: Indices, j: Indices, step: float) -> tuple[Floats, Indices, Indices]:

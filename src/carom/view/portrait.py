@@ -3,8 +3,8 @@
 from typing import Any, Protocol
 
 from carom import mechanics
-from carom.pictures.look import is_paper, scales
 from carom.pictures.room import extent
+from carom.pictures.scales import full_gravity
 from carom.scene import Scene
 from carom.state import State
 from carom.walls import wall_names
@@ -35,10 +35,11 @@ class Sitter(Protocol):
         """How contacts are found."""
 
 
-def portrait(sim: Sitter, state: State, key: int) -> dict[str, Any]:
+def portrait(sim: Sitter, state: State, key: int, full: tuple[float, float]) -> dict[str, Any]:
     """Describe a scene for the page, as plain lists and numbers fit for JSON.
 
-    `key` changes when another scene was loaded, so that the page begins afresh.
+    `key` changes when another scene was loaded, so that the page begins afresh. `full` is where
+    the scales of energy and speed end now.
     """
     scene, world = sim.scene, sim.world
     camera = scene.camera if scene else None
@@ -72,5 +73,7 @@ def portrait(sim: Sitter, state: State, key: int) -> dict[str, Any]:
         ],
         "low": low.tolist(),
         "high": high.tolist(),
-        **scales(state, world, paper=is_paper(scene)),
+        "full_energy": full[0],
+        "full_speed": full[1],
+        "full_gravity": full_gravity(state, world),
     }

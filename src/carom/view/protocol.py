@@ -101,6 +101,8 @@ class Meters:
     reached: float
     momentum: tuple[float, float, float]
     temperature: float
+    full_energy: float
+    full_speed: float
     epoch: int
     scene: int
     missed: int = 0
@@ -136,6 +138,7 @@ def encode_frame(now: Moment, meters: Meters) -> bytes:
         *(now.time, m.clock, *m.gravity, m.kinetic, m.potential, m.dissipated, m.drift),
         *(now.collisions, now.wall_collisions, m.speed, m.reached),
         *(*m.momentum, m.temperature, m.missed, m.overlap),
+        *(m.full_energy, m.full_speed),
     )
     return b"".join(
         (

@@ -9,7 +9,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from carom.errors import FileError, InputError
+from carom.errors import FileError, InputError, unwritable
+from carom.pictures.look import is_paper
+from carom.pictures.scales import Scales
 from carom.scene import Scene
 from carom.state import Floats
 from carom.view import bundle
@@ -98,7 +100,7 @@ def write_replay(
     speed : float
         At which it begins to play, in multiples of the scene's pace.
     progress : callable, optional
-        Told the time of every frame that is done.
+        Told the time of each frame twice: when it is there, and when it is packed.
 
     Raises
     ------
@@ -119,14 +121,16 @@ def write_replay(
     if path.suffix.lower() != ".html":
         msg = f"a replay is a web page, so its name ends in .html; {path.name!r} does not"
         raise InputError(msg)
-    text = replay(source, times, color=color, title=title, speed=speed, progress=progress)
     part = path.with_name(f"{path.name}.part")  # no half file, whatever happens
     try:
+        part.touch()  # that it cannot be written is said before the work is done
+        text = replay(source, times, color=color, title=title, speed=speed, progress=progress)
         part.write_text(text, encoding="utf-8", newline="\n")
         part.replace(path)
+    except FileError:  # the recording's
+        raise
     except OSError as error:
-        msg = f"{path} cannot be written: {error.strerror or error}"
-        raise FileError(msg) from error
+        raise unwritable(path, error) from error
     finally:
         part.unlink(missing_ok=True)
 
@@ -172,6 +176,8 @@ def pack(
     first: Any = None
     asked = len(times) if isinstance(times, Sized) else 0
     rows: list[list[float]] = []
+    scales = Scales(is_paper(source.scene))
+    full = scales.ends
     places: list[Any] = []
     speeds: list[Any] = []
     counts: list[Any] = []
@@ -192,7 +198,9 @@ def pack(
                 f"which holds {MOST:,} in all: take fewer frames (--fps, a shorter stretch)"
             )
             raise InputError(msg)
-        rows.append(_row(frame))
+        ends = scales.follow(frame.state, frame.world)
+        full = full if rows else ends
+        rows.append([*_row(frame), *ends])
         places.append(np.asarray(frame.position, np.float32).T)
         speeds.append(np.asarray(frame.velocity, np.float32).T)
         counts.append(counts_of(frame))
@@ -202,7 +210,7 @@ def pack(
         msg = f"a replay needs at least two frames at different times; there are {len(rows)}"
         raise InputError(msg)
     sitter = _Sitter(source.scene, first.world, first.walls, source.pace)
-    about = portrait(sitter, first.state, 0)
+    about = portrait(sitter, first.state, 0, full)
     about |= {} if color is None else {"color": color}
     about |= {} if title is None else {"title": title}
     reel = Reel(
@@ -213,11 +221,11 @@ def pack(
         np.array(counts, np.uint32),
         speed,
     )
-    return encode(reel), about["title"] or "carom"
+    return encode(reel, progress), about["title"] or "carom"
 
 
 def _row(frame: Instant) -> list[float]:
-    """`wire.REEL_COLUMNS`; seven digits are enough for what is only shown."""
+    """`wire.REEL_COLUMNS` but for the ends of scales; seven digits are enough to be shown."""
     shown = [frame.kinetic_energy, frame.potential_energy, frame.dissipated, frame.energy_drift]
     moved = [*np.asarray(frame.momentum).tolist(), frame.temperature]
     short = np.array([*shown, *moved], np.float32).astype(float).tolist()

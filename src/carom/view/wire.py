@@ -15,7 +15,7 @@ from typing import Any, NoReturn, Protocol
 from carom.errors import InputError
 
 MAGIC = b"CARO"
-VERSION = 2
+VERSION = 3
 SOCKET_PATH = "/live"
 #: Kinds of binary messages.
 FRAME, SCENE, SKETCH = 1, 2, 3
@@ -45,14 +45,15 @@ METERS = (
     *("t", "clock", "gravity_x", "gravity_y", "gravity_z"),
     *("kinetic", "potential", "dissipated", "drift", "collisions", "wall_collisions"),
     *("speed", "reached", "momentum_x", "momentum_y", "momentum_z"),
-    *("temperature", "missed", "overlap"),
+    *("temperature", "missed", "overlap", "full_energy", "full_speed"),
 )
 #: Numbers of each frame of a replay (`carom.view.reel`), by the names of `METERS`.
 REEL_COLUMNS = (
     *("t", "gravity_x", "gravity_y", "gravity_z", "kinetic", "potential", "dissipated", "drift"),
     *("collisions", "wall_collisions", "momentum_x", "momentum_y", "momentum_z", "temperature"),
+    *("full_energy", "full_speed"),
 )
-REEL_FORMAT = 2
+REEL_FORMAT = 3
 SCENE_HEADER = struct.Struct("<" + "".join(letter for _, letter in HEADER))
 FRAME_HEADER = struct.Struct(SCENE_HEADER.format + "d" * len(METERS))
 #: Bytes of one sphere in a frame: x and v as three floats each, and a count.

@@ -45,6 +45,18 @@ test("the camera sees its target in the middle of what panels leave free", () =>
   assert.ok(Math.abs(x + 0.2) < 1e-6 && Math.abs(y - 0.2) < 1e-6);
 });
 
+test("straight from above or below nothing is turned round", () => {
+  for (const z of [30, -30]) {
+    for (const x of [0, -0, 1e-17, -1e-17]) {
+      for (const y of [0, -0, 1e-17, -1e-17]) {
+        const camera = new Camera();
+        camera.look([x, y, z], [0, 0, 0]);
+        camera.axes.right.forEach((part, k) => assert.ok(Math.abs(part - [1, 0, 0][k]) < 1e-9));
+      }
+    }
+  }
+});
+
 test("it fits balls tightly, from every side, in tall and wide windows", () => {
   for (const [width, height] of [[1280, 720], [390, 844]]) {
     for (const azimuth of [-2, 0, 0.5, 3]) {

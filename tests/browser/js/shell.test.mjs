@@ -78,8 +78,14 @@ test("the scale of collisions grows with the largest count and ignores the bit o
   assert.equal(fullOf("speed", scene, undefined), 3);
   assert.equal(fullOf("energy", scene, undefined), 7);
   assert.equal(fullOf("collisions", scene, undefined), 5);
-  assert.equal(fullOf("collisions", scene, Uint32Array.of(1, 12)), 20);
-  assert.equal(fullOf("collisions", scene, Uint32Array.of(0x80000000 + 3, 0)), 5);
+  assert.equal(fullOf("collisions", scene, { counts: Uint32Array.of(1, 12) }), 20);
+  assert.equal(fullOf("collisions", scene, { counts: Uint32Array.of(0x80000000 + 3, 0) }), 5);
+});
+
+test("the scales of energy and speed are those of the frame, before there is one of the scene", () => {
+  const scene = { about: { full_speed: 3, full_energy: 7 } };
+  assert.equal(fullOf("speed", scene, { fullSpeed: 20, fullEnergy: 50 }), 20);
+  assert.equal(fullOf("energy", scene, { fullSpeed: 20, fullEnergy: 50 }), 50);
 });
 
 test("links come back as they were sent", () => {

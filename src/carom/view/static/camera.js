@@ -23,6 +23,7 @@ import {
 
 const HALF_ANGLE = Math.tan((17 * Math.PI) / 180); // half the picture's height at distance 1
 const STEEPEST = 1.54; // radians; at a right angle left and right lose their meaning
+const PLUMB = 1e-9; // radians from straight down or up, where there is no direction to look in
 const ROUND = 2 * Math.PI;
 const GLIDE = 0.07; // seconds in which a lag shrinks to a third
 /** @type {{azimuth: number, height: number, zoom: number, target: Vec3}} */
@@ -251,7 +252,9 @@ export class Camera {
     const [forward, side] = this.compass;
     this.height = Math.asin(Math.max(-1, Math.min(1, dot(normalize(line), this.up))));
     this.height = Math.min(STEEPEST, Math.max(-STEEPEST, this.height));
-    this.azimuth = Math.atan2(dot(line, side), -dot(line, forward));
+    const [x, y] = [dot(line, side), -dot(line, forward)];
+    // Straight down, and nearly so, no direction is left but the sign of a zero.
+    this.azimuth = Math.hypot(x, y) > PLUMB * this.distance ? Math.atan2(x, y) : 0;
     this.version++;
   }
 

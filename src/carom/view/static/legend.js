@@ -1,6 +1,7 @@
 /**
  * Says what the colours mean, with numbers.
  * @typedef {import("./protocol.js").ColorMode} ColorMode
+ * @typedef {import("./protocol.js").Keyframe} Keyframe
  * @typedef {import("./protocol.js").Scene} Scene
  */
 import { SCALES, SPECIES, css, saturated, unpack } from "./colors.js";
@@ -14,13 +15,13 @@ const FEWEST = 5; // collisions at the end of the scale, at least: one step must
 
 /**
  * The number at the end of the colour scale.
- * @param {ColorMode} mode @param {Scene} scene @param {Uint32Array | undefined} counts
+ * @param {ColorMode} mode @param {Scene} scene @param {Keyframe | undefined} frame the newest, if there is one
  */
-export function fullOf(mode, scene, counts) {
-  if (mode === "speed") return scene.about.full_speed;
-  if (mode !== "collisions") return scene.about.full_energy;
+export function fullOf(mode, scene, frame) {
+  if (mode === "speed") return frame?.fullSpeed ?? scene.about.full_speed;
+  if (mode !== "collisions") return frame?.fullEnergy ?? scene.about.full_energy;
   let most = FEWEST;
-  for (const each of counts ?? []) most = Math.max(most, each & ~STILL);
+  for (const each of frame?.counts ?? []) most = Math.max(most, each & ~STILL);
   return roundUp(most);
 }
 

@@ -1,6 +1,7 @@
 /**
  * How spheres look: coloured by what, solid or wire; and the legend that explains it.
  * @typedef {import("./protocol.js").ColorMode} ColorMode
+ * @typedef {import("./protocol.js").Keyframe} Keyframe
  * @typedef {import("./protocol.js").Scene} Scene
  */
 import { at } from "./dom.js";
@@ -17,7 +18,7 @@ export class Look {
     this.full = 1; // energy, speed or collisions at the end of the scale
     this.wire = false;
     /** @type {Scene | null} */ this.scene = null;
-    /** @type {Uint32Array | undefined} */ this.counts = undefined;
+    /** @type {Keyframe | undefined} */ this.frame = undefined;
     for (const input of document.querySelectorAll("input[name=color], input[name=look]")) {
       input.addEventListener("change", () => {
         const { name, value } = /** @type {HTMLInputElement} */ (input);
@@ -30,7 +31,7 @@ export class Look {
   /** @param {Scene} scene @param {boolean} other whether it is another one, with its own look */
   setScene(scene, other) {
     this.scene = scene;
-    this.counts = undefined;
+    this.frame = undefined;
     const several = new Set(scene.species).size > 1;
     at("choose-species").hidden = !several;
     if (other) this.setWire(scene.about.wire);
@@ -43,7 +44,7 @@ export class Look {
     this.color = mode;
     mark("color", mode);
     if (this.scene !== null) {
-      this.full = fullOf(mode, this.scene, this.counts);
+      this.full = fullOf(mode, this.scene, this.frame);
       drawLegend(at("legend"), mode, this.full, this.scene);
     }
     this.changed();
@@ -61,11 +62,11 @@ export class Look {
     this.changed();
   }
 
-  /** Let the scale of collisions grow with them. @param {Uint32Array} counts */
-  watch(counts) {
-    this.counts = counts;
-    if (this.color !== "collisions" || this.scene === null) return;
-    if (fullOf("collisions", this.scene, counts) !== this.full) this.setColor("collisions");
+  /** Let the scale follow the motion. @param {Keyframe} frame the newest */
+  watch(frame) {
+    this.frame = frame;
+    if (this.scene === null) return;
+    if (fullOf(this.color, this.scene, frame) !== this.full) this.setColor(this.color);
   }
 }
 

@@ -384,7 +384,7 @@ export class Page {
     const chosen = this.hands.selected !== null || this.hands.isOn("add");
     at("section-inspector").hidden = NARROW.matches && !chosen;
     const { newest } = this.timeline;
-    if (newest !== undefined) this.look.watch(newest.counts);
+    if (newest !== undefined) this.look.watch(newest);
     if (this.settings?.comparing) {
       this.comparison.update([newest, this.twin.newest], this.settings.tick, now);
     }

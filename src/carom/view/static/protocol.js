@@ -59,6 +59,8 @@
  * @property {number} temperature
  * @property {number} missed
  * @property {number} overlap
+ * @property {number} fullEnergy where the scales of colours end
+ * @property {number} fullSpeed
  * @property {Uint8Array} spheres positions, velocities and counts, as they came
  * @property {Float32Array} position
  * @property {Float32Array} velocity
@@ -173,6 +175,8 @@ function decodeFrame(buffer, view) {
     temperature: number(AT.temperature),
     missed: number(AT.missed),
     overlap: number(AT.overlap),
+    fullEnergy: number(AT.full_energy),
+    fullSpeed: number(AT.full_speed),
     spheres: new Uint8Array(buffer, start),
     position: new Float32Array(buffer, start, 3 * n),
     velocity: new Float32Array(buffer, start + 12 * n, 3 * n),

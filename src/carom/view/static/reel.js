@@ -75,6 +75,8 @@ const READ = {
   momentum_y: ({ momentum }) => momentum[1],
   momentum_z: ({ momentum }) => momentum[2],
   temperature: ({ temperature }) => temperature,
+  full_energy: ({ fullEnergy }) => fullEnergy,
+  full_speed: ({ fullSpeed }) => fullSpeed,
 };
 
 /**
@@ -210,6 +212,8 @@ function emptyKeyframe({ n, number }, numbers) {
     temperature: numbers.temperature,
     missed: 0,
     overlap: 0,
+    fullEnergy: numbers.full_energy,
+    fullSpeed: numbers.full_speed,
     spheres: new Uint8Array(buffer),
     position: new Float32Array(buffer, 0, 3 * n),
     velocity: new Float32Array(buffer, 12 * n, 3 * n),

@@ -1,6 +1,6 @@
 // Made by carom/view/wire.py, which explains it; a test compares the two.
 export const MAGIC = 1330790723;
-export const VERSION = 2;
+export const VERSION = 3;
 export const SOCKET_PATH = "/live";
 export const FRAME = 1;
 export const SCENE = 2;
@@ -15,10 +15,10 @@ export const SLOWEST = 0.001;
 export const FASTEST = 100;
 export const WRONG_TOKEN = 4001;
 export const SCENE_HEADER_BYTES = 24;
-export const FRAME_HEADER_BYTES = 176;
+export const FRAME_HEADER_BYTES = 192;
 export const SPHERE_BYTES = 28;
-export const REEL_FORMAT = 2;
-export const REEL_COLUMNS = ["t", "gravity_x", "gravity_y", "gravity_z", "kinetic", "potential", "dissipated", "drift", "collisions", "wall_collisions", "momentum_x", "momentum_y", "momentum_z", "temperature"];
+export const REEL_FORMAT = 3;
+export const REEL_COLUMNS = ["t", "gravity_x", "gravity_y", "gravity_z", "kinetic", "potential", "dissipated", "drift", "collisions", "wall_collisions", "momentum_x", "momentum_y", "momentum_z", "temperature", "full_energy", "full_speed"];
 /** Where each number of a message's header stands, in bytes. */
 export const AT = {
   magic: 0,
@@ -47,6 +47,8 @@ export const AT = {
   temperature: 152,
   missed: 160,
   overlap: 168,
+  full_energy: 176,
+  full_speed: 184,
 };
 /** The keys of each operation a page may ask for, besides `op`. */
 export const OPERATIONS = {
