@@ -68,9 +68,10 @@ def parts(color: int | Colors) -> Floats:
 
 def whole(rgb: Floats) -> Colors:
     """The same packed again."""
-    levels: Colors = np.floor(np.clip(rgb, 0, 1) * 255 + 0.5).astype(np.uint32)
-    shifted: Colors = levels << np.array([16, 8, 0], np.uint32)
-    return np.asarray(shifted.sum(axis=-1), np.uint32)
+    levels: Colors = (np.clip(rgb, 0, 1) * 255 + 0.5).astype(np.uint32)
+    red, green, blue = np.moveaxis(levels, -1, 0)
+    packed: Colors = red << np.uint32(16) | green << np.uint32(8) | blue
+    return packed
 
 
 def saturated(own: Floats, saturation: Floats) -> Floats:
@@ -85,10 +86,8 @@ def saturated(own: Floats, saturation: Floats) -> Floats:
 def along(scale: tuple[int, ...], place: Floats) -> Floats:
     """Colours on a scale, from 0 to 1."""
     stops = parts(np.array(scale, np.uint32))
-    at = np.clip(place, 0, 1) * (len(scale) - 1)
-    step = np.minimum(at, len(scale) - 2).astype(np.intp)
-    result: Floats = stops[step] + (at - step)[..., None] * (stops[step + 1] - stops[step])
-    return result
+    at = np.linspace(0, 1, len(scale))
+    return np.stack([np.interp(place, at, channel) for channel in stops.T], axis=-1)
 
 
 def colors_of(state: State, color: Color, full: float) -> Colors:
