@@ -38,6 +38,12 @@ Raster::Raster(const View& view, const Look& look, Room room)
         walls_.back().paint(still_);
     }
     for (const double radius : room_.shells) draw_shell(view, look, radius, Half::far, still_);
+    if (!room_.shells.empty()) {  // white over black: how much they hide
+        veil_.resize(view.width, still_.rows);
+        Look white = look;
+        white.shell = {1, 1, 1};
+        for (const double radius : room_.shells) draw_shell(view, white, radius, Half::near, veil_);
+    }
     std::vector<uint8_t> bytes(size_t(3) * view.width * view.height);
     for (int band = 0; band * band_ < view.height; ++band) paint(band, bytes.data());
     empty_ = std::move(bytes);
@@ -141,6 +147,17 @@ void Raster::uncover() {
     }
 }
 
+// The near halves of spherical walls.
+void Raster::draw_veil() {
+    if (room_.shells.empty()) return;
+    for (int row = frame_.rows.first; row <= frame_.rows.last; ++row) {
+        const float* const alpha = veil_.row(row);
+        float* const pixels = frame_.row(row);
+        for (int i = frame_.columns.first; i <= frame_.columns.last; ++i)
+            blend(pixels + 3 * i, look_.shell, alpha[3 * i]);
+    }
+}
+
 // The columns of a band that differ from the picture without spheres.
 Span Raster::columns_of(int band) const {
     if (look_.wire || empty_.empty()) return {0, view_.width - 1};
@@ -178,7 +195,7 @@ void Raster::paint(int band, uint8_t* bytes) {
     if (look_.wire)
         for (size_t k = 0; k < balls_.size(); ++k)
             draw_wires(view_, look_, balls_[k], skins_[k].color, frame_);
-    for (const double shell : room_.shells) draw_shell(view_, look_, shell, Half::near, frame_);
+    draw_veil();
     for (int row = frame_.rows.first; row <= frame_.rows.last; ++row)
         levels(frame_.row(row) + from, count, bytes + size_t(3) * view_.width * row + from);
 }

@@ -35,6 +35,7 @@ private:
     void paint(int band, uint8_t* bytes);
     void shade(int k);
     void uncover();
+    void draw_veil();
 
     View view_;
     Look look_;
@@ -54,6 +55,7 @@ private:
     std::vector<int> visible_;          // those of a band that are seen
     std::optional<Crowd> crowd_;
     Frame still_;                 // what lies behind all spheres
+    Frame veil_;                  // how much what lies before all hides
     Frame frame_;                 // a band of the picture
     std::vector<uint8_t> empty_;  // the picture without spheres
     std::mutex busy_;
