@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <vector>
 
 #include "contact.hpp"
 #include "memory.hpp"
@@ -44,13 +45,21 @@ public:
             if (!(n >= 5 && n <= kMost)) return false;
             n_[a] = int32_t(n);
             width_[a] = side[a] / n;
-            half_[a] = 0.5 * width_[a];
             low_[a] = mid[a] - 0.5 * side[a];
             period_[a] = periodic[a] ? side[a] : 0;
-            inverse_[a] = periodic[a] ? 1 / side[a] : 0;
             all *= n;
         }
         if (all > 4 * double(spheres) + 64) return false;
+        bordered_ = !(periodic[0] && periodic[1] && periodic[2]);
+        widths_ = {width_[0], width_[1], width_[2], 0};
+        halves_ = widths_ * 0.5;
+        lows_ = {low_[0], low_[1], low_[2], 0};
+        periods_ = {period_[0], period_[1], period_[2], 0};
+        const auto inverse = [&](int a) { return periodic[a] ? 1 / side[a] : 0; };
+        inverses_ = {inverse(0), inverse(1), inverse(2), 0};
+        fill(0, 1);
+        fill(1, n_[0]);
+        fill(2, n_[0] * n_[1]);
         clear();
         return true;
     }
@@ -118,26 +127,22 @@ public:
         }
     }
 
-    // From the middle of the cell to x, nearest image.
-    Vec3 from_middle(const Vec3& x, Cell at) const {
-        const double p[3] = {x.x, x.y, x.z};
-        double d[3];
-        for (int a = 0; a < 3; ++a) {
-            d[a] = p[a] - (low_[a] + (at.c[a] + 0.5) * width_[a]);
-            d[a] -= nearest(d[a] * inverse_[a]) * period_[a];
-        }
-        return {d[0], d[1], d[2]};
+    // From the middle of the cell to x, nearest image. (Of the fourth number, nothing.)
+    Four from_middle(const Four& x, Cell at) const {
+        const Four middle{at.c[0] + 0.5, at.c[1] + 0.5, at.c[2] + 0.5, 0};
+        const Four d = x - (lows_ + middle * widths_);
+        return d - nearest(d * inverses_) * periods_;
     }
 
     // Up to rounding.
     bool holds(const Vec3& x, Cell at) const {
-        const Vec3 d = from_middle(x, at);
-        const double p[3] = {d.x, d.y, d.z};
+        const Four from = from_middle(Four(x), at);
+        const double d[3] = {from.x(), from.y(), from.z()};
         for (int a = 0; a < 3; ++a) {
             const double most = width_[a] * (0.5 + 1e-9);
             const bool border_low = period_[a] == 0 && at.c[a] == 0,
                        border_high = period_[a] == 0 && at.c[a] == n_[a] - 1;
-            if ((p[a] < -most && !border_low) || (p[a] > most && !border_high)) return false;
+            if ((d[a] < -most && !border_low) || (d[a] > most && !border_high)) return false;
         }
         return true;
     }
@@ -147,15 +152,22 @@ public:
         double wait;
         int axis;
     };
-    Crossing crossing(const Vec3& d, const Vec3& v, Cell at) const {
-        const double from[3] = {d.x, d.y, d.z}, speed[3] = {v.x, v.y, v.z};
+    Crossing crossing(const Four& d, const Four& v, Cell at) const {
+        const auto until = [](Two from, Two speed, Two half) {
+            const Two wait = ((speed < 0 ? -half : half) - from) / speed;
+            return speed != 0 ? wait : Two{} + kNever;
+        };
+        const Four waits{until(d.xy, v.xy, halves_.xy), until(d.zw, v.zw, halves_.zw)};
+        double wait[3] = {waits.x(), waits.y(), waits.z()};
+        if (bordered_) {
+            const double speed[3] = {v.x(), v.y(), v.z()};
+            for (int a = 0; a < 3; ++a)
+                if (period_[a] == 0 && at.c[a] == (speed[a] > 0 ? n_[a] - 1 : 0)) wait[a] = kNever;
+        }
         Crossing out{kNever, 0};       // of a sphere at rest
         for (int a = 0; a < 3; ++a) {  // no branches: nothing here can be foreseen
-            double wait = (std::copysign(half_[a], speed[a]) - from[a]) / speed[a];
-            wait = speed[a] != 0 ? wait : kNever;
-            if (period_[a] == 0 && at.c[a] == (speed[a] > 0 ? n_[a] - 1 : 0)) wait = kNever;
-            out.axis = wait < out.wait ? a : out.axis;
-            out.wait = wait < out.wait ? wait : out.wait;
+            out.axis = wait[a] < out.wait ? a : out.axis;
+            out.wait = wait[a] < out.wait ? wait[a] : out.wait;
         }
         out.wait = std::max(out.wait, 0.0);
         return out;
@@ -173,11 +185,22 @@ public:
     }
 
     GridBlock around(Cell at) const {
-        GridBlock b;
-        fill(b.x, at.c[0], 0, 1);
-        fill(b.y, at.c[1], 1, n_[0]);
-        fill(b.z, at.c[2], 2, n_[0] * n_[1]);
-        return b;
+        return {axes_[0][size_t(2 * at.c[0])], axes_[1][size_t(2 * at.c[1])],
+                axes_[2][size_t(2 * at.c[2])]};
+    }
+    // All cells around either of two, of which none is further along any axis than the next: false
+    // if one is.
+    bool around_both(Cell p, Cell q, GridBlock& out) const {
+        GridBlock::Axis* axes[3] = {&out.x, &out.y, &out.z};
+        bool beside = true;
+        for (int a = 0; a < 3; ++a) {
+            // The lower of the two, and the next, which may be the first.
+            const int32_t d = q.c[a] - p.c[a], round = period_[a] > 0 ? n_[a] - 1 : n_[a];
+            const bool up = (d == 1) | (d == -round), down = (d == -1) | (d == round);
+            beside &= (d == 0) | up | down;
+            *axes[a] = axes_[a][size_t(2 * (down ? q.c[a] : p.c[a]) + (d != 0))];
+        }
+        return beside;
     }
     // The nine cells that come into sight through the face just crossed.
     GridBlock face(Cell at, int axis, bool up) const {
@@ -218,24 +241,18 @@ private:
     }
     int32_t number_of(Cell a) const { return (a.c[2] * n_[1] + a.c[1]) * n_[0] + a.c[0]; }
 
-    void fill(GridBlock::Axis& out, int32_t c, int axis, int32_t stride) const {
+    // Of each coordinate along an axis: the cells from the one before to the one after, and to the
+    // second after.
+    void fill(int axis, int32_t stride) {
         const int32_t n = n_[axis];
-        out.n = 3;
         const bool closed = period_[axis] > 0;
-        int32_t lo = c - 1, hi = c + 1;
-        if (lo < 0) lo = n - 1;
-        if (hi == n) hi = 0;
-        out.cell[0] = lo * stride;
-        out.cell[1] = c * stride;
-        out.cell[2] = hi * stride;
-        if (closed) return;
-        if (c == 0) {
-            out.n = 2;
-            out.cell[0] = out.cell[1];
-            out.cell[1] = out.cell[2];
-        } else if (c == n - 1) {
-            out.n = 2;
-        }
+        axes_[axis].clear();
+        for (int32_t c = 0; c < n; ++c)
+            for (const int32_t last : {c + 1, c + 2}) {
+                GridBlock::Axis& out = axes_[axis].emplace_back(GridBlock::Axis{0, {}});
+                for (int32_t k = c - 1; k <= last; ++k)
+                    if (closed || (k >= 0 && k < n)) out.cell[out.n++] = (k + n) % n * stride;
+            }
     }
 
     // Drops the cell behind `before` once it is empty.
@@ -250,7 +267,10 @@ private:
     }
 
     int32_t n_[3] = {0, 0, 0};
-    double width_[3], half_[3], low_[3], period_[3], inverse_[3];
+    bool bordered_ = false;  // an axis has walls
+    double width_[3], low_[3], period_[3];
+    Four widths_, halves_, lows_, periods_, inverses_;
+    std::vector<GridBlock::Axis> axes_[3];
     Array<GridCell> cells_;
     int32_t free_ = -1;  // chain of spare cells
 };

@@ -174,8 +174,10 @@ inline void Engine::settle_on(int i, double t, int32_t partner, double leaves, i
     e.partner_count = events_[size_t(partner >= 0 ? partner : i)].count;
 }
 
-inline void Engine::look_at_exit(const Motion& at, Grid::Cell cell, Look& out) const {
-    const auto [wait, axis] = grid_.crossing(grid_.from_middle(at.x, cell), at.v, cell);
+inline void Engine::look_at_exit(int i, Grid::Cell cell, Look& out) const {
+    const Sphere& s = spheres_[size_t(i)];
+    const Four v = velocity_of(s), here = position_of(s) + v * (now_ - s.t);  // no gravity on a grid
+    const auto [wait, axis] = grid_.crossing(grid_.from_middle(here, cell), v, cell);
     out.leaves = now_ + wait;
     out.axis = axis;
 }
@@ -185,23 +187,45 @@ void Engine::look_through(int i, const GridBlock& block, Look& out) const {
     int32_t* row = near_.id.data();
     for (int k = 1; k <= 16; ++k) row[n + k] = i;
     // The first place of each piece is not looked at: it is the last of the piece before.
-    for (; n > 0; n -= Row::kPlaces, row += Row::kPlaces)
+    for (; n > 0; n -= Look::kPlaces, row += Look::kPlaces)
         out.add(kernels_->first_met(lens_, glances_.data(), glances_[size_t(i)], i, row,
-                                    std::min(n, Row::kPlaces)),
+                                    std::min(n, Look::kPlaces)),
                 row, now_, lens_.time);
+}
+
+// What i and j see who are near each other: most of it is the same. False if they are not.
+bool Engine::look_around_both(int i, int j, Look& a, Look& b) const {
+    GridBlock block;
+    const Grid::Cell p = Grid::unpack(events_[size_t(i)].cell),
+                     q = Grid::unpack(events_[size_t(j)].cell);
+    if (!grid_.around_both(p, q, block)) return false;
+    look_at_exit(i, p, a);
+    look_at_exit(j, q, b);
+    int32_t n = collect(block, 1);
+    int32_t* row = near_.id.data();
+    row[0] = i;
+    for (int k = 1; k <= 16; ++k) row[n + k] = i;
+    const Glance* const me[2] = {&glances_[size_t(i)], &glances_[size_t(j)]};
+    for (; n > 0; n -= Look::kPlaces, row += Look::kPlaces) {
+        Guess met[2];
+        kernels_->first_met_by_two(lens_, glances_.data(), me, row, std::min(n, Look::kPlaces),
+                                   met);
+        a.add(met[0], row, now_, lens_.time);
+        b.add(met[1], row, now_, lens_.time);
+    }
+    return true;
 }
 
 // First half of a prediction: who of the neighbours may be met first, at a glance.
 inline Engine::Look Engine::look(int i) const {
-    const Motion at = motion(i, now_);
     Look out{kNever, kNone, kNever, kNever};
     if (gridded_) {
         const Grid::Cell cell = Grid::unpack(events_[size_t(i)].cell);
-        look_at_exit(at, cell, out);
+        look_at_exit(i, cell, out);
         look_through(i, grid_.around(cell), out);
         return out;
     }
-    out.leaves = escape_time(i, at);
+    out.leaves = escape_time(i, motion(i, now_));
     for (const Row& part : rows_.of(i)) {
         const auto* row = reinterpret_cast<const int32_t*>(&part);
         out.add(kernels_->first_met(lens_, glances_.data(), glances_[size_t(i)], i, row, part.n),
@@ -278,7 +302,7 @@ void Engine::solve(int i) {
     const double bound = e.t, met = contact(i, j);
     Look seen{kNever, kNone, kNever, kNever};
     if (met >= bound && met <= bound + doubt_) {
-        if (gridded_) look_at_exit(motion(i, now_), Grid::unpack(e.cell), seen);
+        if (gridded_) look_at_exit(i, Grid::unpack(e.cell), seen);
         return settle_on(i, met, j, seen.leaves, seen.axis);
     }
     ++work_.predictions;
@@ -314,10 +338,9 @@ void Engine::open_bucket() {
 void Engine::change_cell(int i) {
     ++work_.shells;
     Event& e = events_[size_t(i)];
-    const Motion at = motion(i, now_);
     const Grid::Cell old = Grid::unpack(e.cell);
     const int axis = Grid::axis(e.cell);
-    const bool up = Grid::upwards(at.v, axis);
+    const bool up = Grid::upwards(spheres_[size_t(i)].v, axis);
     const Grid::Cell cell = grid_.next(old, axis, up);
     grid_.remove(i, old);
     grid_.add(i, cell);
@@ -326,7 +349,7 @@ void Engine::change_cell(int i) {
     if (e.partner == kEscape || stale(e)) return predict(i);
     refresh(i);
     Look seen{kNever, kNone, kNever, kNever};
-    look_at_exit(at, cell, seen);
+    look_at_exit(i, cell, seen);
     look_through(i, grid_.face(cell, axis, up), seen);
     double t = e.contact;
     int32_t partner = e.partner;
@@ -347,15 +370,13 @@ inline double Engine::contact(int i, int32_t j) const {
 // When two in free flight meet in the one image that they can: what `consider` finds for them.
 inline double Engine::free_contact(int i, int32_t j) const {
     ++work_.exact;
-    Relative rel = relative(i, j);
-    Vec3 m;
-    if (periodic_) {
-        m = nearest((rel.r + rel.v * (now_ - rel.from)) * inverse_period_);
-        rel.r -= m * world_.period;
-    }
-    const double wait = contact_time(rel.r, rel.v, spheres_[size_t(i)].r + spheres_[size_t(j)].r);
-    if (bodies_[size_t(i)].last == j && just_met(i, j, to_image(m))) return kNever;
-    return rel.from + wait;
+    auto [r, v, from] = free_relative(i, j);
+    const Four m = nearest((r + v * (now_ - from)) * inverse_box_);
+    r = r - m * box_;
+    const double sigma = spheres_[size_t(i)].r + spheres_[size_t(j)].r;
+    const double wait = contact_time(r.three(), v.three(), sigma);
+    if (bodies_[size_t(i)].last == j && just_met(i, j, to_image(m.three()))) return kNever;
+    return from + wait;
 }
 
 void Engine::predict(int i) {
@@ -376,7 +397,11 @@ void Engine::predict_both(int i, int j) {
     work_.predictions += 2;
     refresh(i);
     refresh(j);
-    const Look a = look(i), b = look(j);
+    Look a{kNever, kNone, kNever, kNever}, b = a;
+    if (!gridded_ || !look_around_both(i, j, a, b)) {
+        a = look(i);
+        b = look(j);
+    }
     decide(i, a);
     decide(j, b);
     profile_.lap(Profile::predict);

@@ -37,7 +37,8 @@ struct EngineProbe {
         const Engine::Motion at = e.motion(i, now);
         if (e.gridded_) {
             const Grid::Cell cell = Grid::unpack(e.events_[size_t(i)].cell);
-            return now + e.grid_.crossing(e.grid_.from_middle(at.x, cell), at.v, cell).wait;
+            const Four x(at.x), v(at.v);
+            return now + e.grid_.crossing(e.grid_.from_middle(x, cell), v, cell).wait;
         }
         e.now_ = now;
         return e.escape_time(i, at);

@@ -118,7 +118,7 @@ TEST(grid_crossings) {
             const double t = v[a] == 0 ? kNever : (low[a] + behind * width[a] - x[a]) / v[a];
             if (t < wait) wait = t, axis = a;
         }
-        const auto c = grid.crossing(grid.from_middle(at, cell), by, cell);
+        const auto c = grid.crossing(grid.from_middle(Four(at), cell), Four(by), cell);
         if (wait == kNever) {
             CHECK(c.wait == kNever);
             continue;
@@ -127,7 +127,7 @@ TEST(grid_crossings) {
         if (c.axis != axis) continue;  // through an edge, by rounding
         const Grid::Cell next = grid.next(cell, axis, v[axis] > 0);
         CHECK(grid.holds(at + by * c.wait, cell) && grid.holds(at + by * c.wait, next));
-        CHECK(grid.crossing(grid.from_middle(at + by * c.wait, next), by, next).wait >= 0);
+        CHECK(grid.crossing(grid.from_middle(Four(at + by * c.wait), next), Four(by), next).wait >= 0);
     }
     // Along an axis with walls the cells of the border go on for ever.
     for (const double far : {1e9, 1e300}) {
