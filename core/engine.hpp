@@ -33,7 +33,7 @@ namespace carom {
 // So many spheres are found in the caches: beyond, looking ahead pays. And so many in the cache
 // next to the processor: beyond, it pays to bring some lines there. Measured on both sides.
 constexpr size_t kListsInCache = 30000, kGridInCache = 64000;
-constexpr size_t kListsAtHand = 6000, kGridAtHand = 12000;
+constexpr size_t kListsAtHand = 1000, kGridAtHand = 12000;
 
 constexpr int kEndless = 60;  // doublings: such a shell is wider than positions are resolved
 
@@ -90,11 +90,11 @@ private:
 
     struct Look {                           // half a prediction
         static constexpr int kPlaces = 63;  // of a row looked through at once
-        double leaves;    // its shell or cell at this time
-        int32_t partner;  // may be met first,
-        double first;     // not before this time,
-        double second;    // and any other not before this
-        int axis = 0;     // along which it leaves its cell
+        double leaves;                      // its shell or cell at this time
+        int32_t partner;                    // may be met first,
+        double first;                       // not before this time,
+        double second;                      // and any other not before this
+        int axis = 0;                       // along which it leaves its cell
         void add(const Guess& guess, const int32_t* row, double now, double unit) {
             const double t1 = now + guess.first * unit, t2 = now + guess.second * unit;
             if (guess.slot == 0) return;
@@ -329,7 +329,8 @@ inline void Engine::refresh(int i) {
     if (gravity_) {  // seen by one who falls along, all that fall fly straight on
         const Motion at = motion(i, now_);
         const double fall = now_ - lens_.start;
-        const Vec3 x = at.x - world_.gravity * (0.5 * fall * fall), u = at.v - world_.gravity * fall;
+        const Vec3 x = at.x - world_.gravity * (0.5 * fall * fall),
+                   u = at.v - world_.gravity * fall;
         here = Four(x);
         v = Four(u);
     }

@@ -28,14 +28,14 @@ struct Lens {
     // 1 / period, where an open axis has a period too, wider than any two neighbours are apart; and
     // what makes a time a fraction that counts ticks as the others count steps.
     Four inverse;
-    float unit[3];        // length of one step of Glance::x
-    float tick;           // time of one step of Glance::t
-    float blur;           // added to radii: more than all errors of a distance
-    float still;          // b^2 below still * v^2: it is not sure that they part
-    float fastest2;       // faster or further than these: solve exactly
+    float unit[3];   // length of one step of Glance::x
+    float tick;      // time of one step of Glance::t
+    float blur;      // added to radii: more than all errors of a distance
+    float still;     // b^2 below still * v^2: it is not sure that they part
+    float fastest2;  // faster or further than these: solve exactly
     double farthest;
-    double start;           // when times were zero: they stay below 1.5 epochs
-    double time;            // what the unit of the bounds is
+    double start;  // when times were zero: they stay below 1.5 epochs
+    double time;   // what the unit of the bounds is
     double scale;  // from velocities to Glance::v
 };
 
@@ -45,8 +45,8 @@ struct Lens {
 using FourInts [[gnu::vector_size(16)]] = int32_t;
 inline FourInts steps(const Four& x, const Four& inverse) {
     const Four sum = x * inverse;
-    return __builtin_shufflevector(FourInts(sum.xy + 0x1.8p20), FourInts(sum.zw + 0x1.8p20), 0, 2, 4,
-                                   6);
+    return __builtin_shufflevector(FourInts(sum.xy + 0x1.8p20), FourInts(sum.zw + 0x1.8p20), 0, 2,
+                                   4, 6);
 }
 
 // Who of a row of neighbours may be met first, and before when nobody else is. Times in units of

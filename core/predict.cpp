@@ -176,7 +176,8 @@ inline void Engine::settle_on(int i, double t, int32_t partner, double leaves, i
 
 inline void Engine::look_at_exit(int i, Grid::Cell cell, Look& out) const {
     const Sphere& s = spheres_[size_t(i)];
-    const Four v = velocity_of(s), here = position_of(s) + v * (now_ - s.t);  // no gravity on a grid
+    const Four v = velocity_of(s),
+               here = position_of(s) + v * (now_ - s.t);  // no gravity on a grid
     const auto [wait, axis] = grid_.crossing(grid_.from_middle(here, cell), v, cell);
     out.leaves = now_ + wait;
     out.axis = axis;

@@ -179,24 +179,28 @@ constexpr Fronts kFronts;
 
 // How many spheres are in a block of grid cells; -1 if `out` may not have room for all.
 int32_t collect(const GridCell* cells, const GridBlock& block, int32_t* out, int32_t room) {
-    int32_t found = 0;
-    const int32_t *x = block.x.cell, width = block.x.n;
+    const GridBlock::Axis x = block.x, y = block.y, z = block.z;  // not to be read again and again
+    int32_t found = 0, width = 0;
+    for (const int32_t c : x.cell) width += c >= 0;
+    if (width == 0) return 0;
 #if defined(__AVX512F__)
     // Along x the cells are one run, or two where the period ends.
     int32_t run = width;
-    if (width > 0 && x[width - 1] != x[0] + width - 1)
-        for (run = 1; x[run] == x[run - 1] + 1;) ++run;
+    if (x.cell[width - 1] != x.cell[0] + width - 1)
+        for (run = 1; x.cell[run] == x.cell[run - 1] + 1;) ++run;
     const auto places = [](int32_t n) { return __mmask16((1u << (4 * n)) - 1); };
     const __mmask16 one = places(run), two = places(width - run);
+    const bool split = run < width;
+    const int32_t first = x.cell[0], second = x.cell[split ? run : 0];
 #endif
-    for (int kz = 0; kz < block.z.n; ++kz) {
-        for (int ky = 0; ky < block.y.n; ++ky) {
-            const GridCell* row = cells + (block.z.cell[kz] + block.y.cell[ky]);
+    for (int kz = 0; kz < 4 && z.cell[kz] >= 0; ++kz) {
+        for (int ky = 0; ky < 4 && y.cell[ky] >= 0; ++ky) {
+            const GridCell* row = cells + (z.cell[kz] + y.cell[ky]);
             if (found + 32 > room) return -1;
 #if defined(__AVX512F__)
-            int32_t n = spheres_in_run(row + x[0], one, out + found);
-            if (n >= 0 && two != 0) {
-                const int32_t more = spheres_in_run(row + x[run], two, out + found + n);
+            int32_t n = spheres_in_run(row + first, one, out + found);
+            if (n >= 0 && split) {
+                const int32_t more = spheres_in_run(row + second, two, out + found + n);
                 n = more < 0 ? -1 : n + more;
             }
             if (n >= 0) {
@@ -205,7 +209,7 @@ int32_t collect(const GridCell* cells, const GridBlock& block, int32_t* out, int
             }
 #endif
             for (int kx = 0; kx < width; ++kx) {
-                const GridCell* cell = row + x[kx];
+                const GridCell* cell = row + x.cell[kx];
                 for (;;) {
                     if (found + 4 > room) return -1;
                     found += spheres_in(*cell, out + found);

@@ -58,11 +58,13 @@ struct alignas(16) GridCell {
     static int32_t link(int32_t cell) { return -2 - cell; }  // in the cell of this number
 };
 
-// A block of grid cells: what each coordinate adds to the number of the cell. In the order of space,
-// so that the cells along x lie side by side in memory, but where the period ends.
+// A block of grid cells: what each coordinate adds to the number of the cell, up to the first that
+// is negative. In the order of space, so that the cells along x lie side by side in memory, but
+// where the period ends.
 struct GridBlock {
-    struct Axis {
-        int32_t n, cell[4];
+    struct alignas(16) Axis {
+        int32_t cell[4];
+        static constexpr int32_t kEnd = -1;
     } x, y, z;
 };
 

@@ -108,8 +108,7 @@ struct Seen {
     transpose(vx, vy, vz, r);
     const Floats wait =
         __builtin_convertvector(Ints(uint32_t(t) - Words(when)), Floats) * lens.tick;
-    return {Words(x), Words(y), Words(z), vx,        vy,
-            vz,       r,        vx * wait, vy * wait, vz * wait};
+    return {Words(x), Words(y), Words(z), vx, vy, vz, r, vx * wait, vy * wait, vz * wait};
 }
 
 // Lower bounds of the contact times with these, as bits, which order like the numbers while these

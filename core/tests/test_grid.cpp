@@ -127,7 +127,8 @@ TEST(grid_crossings) {
         if (c.axis != axis) continue;  // through an edge, by rounding
         const Grid::Cell next = grid.next(cell, axis, v[axis] > 0);
         CHECK(grid.holds(at + by * c.wait, cell) && grid.holds(at + by * c.wait, next));
-        CHECK(grid.crossing(grid.from_middle(Four(at + by * c.wait), next), Four(by), next).wait >= 0);
+        CHECK(grid.crossing(grid.from_middle(Four(at + by * c.wait), next), Four(by), next).wait >=
+              0);
     }
     // Along an axis with walls the cells of the border go on for ever.
     for (const double far : {1e9, 1e300}) {
