@@ -193,7 +193,8 @@ private:
     void ask_for_row_neighbours(int i, const Event& e) const;
     GridBlock new_cells(int i, const Event& e) const;
     void ask_for_cells(int i, const Event& e) const;
-    void ask_for_partners_cells(const Event& e) const;
+    GridBlock cells_of_both(int i, int32_t j) const;
+    void ask_for_partners_cells(int i, const Event& e) const;
     void ask_for_cell_neighbours(int i, const Event& e) const;
 
     // execute.cpp

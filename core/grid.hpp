@@ -215,11 +215,14 @@ public:
 
     void fetch_cell(Cell at) const { fetch(&cells_[size_t(number_of(at))]); }
     void fetch_block(const GridBlock& b) const {
-        for (const int32_t z : b.z.cell)
-            for (const int32_t y : b.y.cell) {
-                if (z < 0 || y < 0 || b.x.cell[0] < 0) continue;
-                fetch(&cells_[size_t(z + y + b.x.cell[0])]);
-                if (b.x.cell[2] >= 0) fetch(&cells_[size_t(z + y + b.x.cell[2])]);
+        if (b.x.cell[0] < 0) return;
+        const auto& x = b.x.cell;
+        const int32_t first = x[0], last = x[3] >= 0 ? x[3] : x[2] >= 0 ? x[2] : first;
+        for (int kz = 0; kz < 4 && b.z.cell[kz] >= 0; ++kz)
+            for (int ky = 0; ky < 4 && b.y.cell[ky] >= 0; ++ky) {
+                const int32_t row = b.z.cell[kz] + b.y.cell[ky];
+                fetch(&cells_[size_t(row + first)]);
+                fetch(&cells_[size_t(row + last)]);
             }
     }
 
