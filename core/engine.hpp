@@ -168,7 +168,7 @@ private:
     bool precedes(int i, const Next& p, const Next& q) const;
     Relative relative(int i, int j) const;
     FreeRelative free_relative(int i, int j) const;
-    double escape_time(int i, const Motion& at) const;
+    double escape_time(int i) const;
 
     // shells.cpp
     void escape(int i);

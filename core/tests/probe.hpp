@@ -41,7 +41,7 @@ struct EngineProbe {
             return now + e.grid_.crossing(e.grid_.from_middle(x, cell), v, cell).wait;
         }
         e.now_ = now;
-        return e.escape_time(i, at);
+        return e.escape_time(i);
     }
     static bool neighbours(const Engine& e, int i, int j) {
         if (e.gridded_) {
@@ -70,7 +70,7 @@ struct EngineProbe {
 
     // Until when a prediction of sphere i must hold; it is made anew then.
     static double horizon(const Engine& e, int i) {
-        if (!e.gridded_) return e.escape_time(i, e.motion(i, e.now_));
+        if (!e.gridded_) return e.escape_time(i);
         const double v = norm(e.spheres_[size_t(i)].v);
         return v > 0 ? e.now_ + 64 * e.cell_ / v : kNever;
     }
