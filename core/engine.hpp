@@ -32,7 +32,7 @@ namespace carom {
 
 // So many spheres are found in the caches: beyond, looking ahead pays. And so many in the cache
 // next to the processor: beyond, it pays to bring some lines there. Measured on both sides.
-constexpr size_t kListsInCache = 30000, kGridInCache = 64000;
+constexpr size_t kListsInCache = 14000, kGridInCache = 64000;
 constexpr size_t kListsAtHand = 1000, kGridAtHand = 12000;
 
 constexpr int kEndless = 60;  // doublings: such a shell is wider than positions are resolved

@@ -42,9 +42,11 @@ Vec3 extent(const Array<Sphere>& spheres, const Vec3& period) {
 }  // namespace
 
 // The margin gives a sphere about thirteen neighbours, which is near the fastest at every density
-// tried: fewer and shells are remade too often, more and every prediction looks at too many.
+// tried: fewer and shells are remade too often, more and every prediction looks at too many. In
+// open space, where spheres part, less: a cloud has more shells to make than events.
 void Engine::choose_shells(const Tuning& tuning) {
-    constexpr double kNeighbours = 13;
+    Vec3 middle, sides;
+    const double neighbours = room(middle, sides) ? 13 : 11;
     if (!shells_on_) return;
     gridded_ = glancing_ = choose_grid(tuning);
     plain_ = gridded_ && world_.restitution == 1 && last_touch_.empty();
@@ -58,7 +60,7 @@ void Engine::choose_shells(const Tuning& tuning) {
         if (s.r > 2 * r) giants += kSpherical * s.r * s.r * s.r;
     }
     const double free = std::max(volume - giants, 0.1 * volume);
-    const double shell = std::cbrt(kNeighbours * free / (kSpherical * double(size())));
+    const double shell = std::cbrt(neighbours * free / (kSpherical * double(size())));
     margin_ = std::clamp(0.5 * shell - r, 0.1 * r, 16 * r);
     if (tuning.margin > 0) margin_ = tuning.margin;
     double most = kNever;

@@ -72,8 +72,8 @@ inline Four velocity_of(const Sphere& s) {
     return a;
 }
 inline void place(Sphere& s, const Four& position, const Four& velocity) {
-    std::memcpy(&s.x, &position, sizeof position);
-    std::memcpy(&s.v, &velocity, sizeof velocity);
+    std::memcpy(static_cast<void*>(&s), &position, sizeof position);
+    std::memcpy(static_cast<void*>(&s.v), &velocity, sizeof velocity);
 }
 
 // An image as far as it can matter to two spheres that have not met anybody else since.

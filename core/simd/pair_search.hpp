@@ -153,7 +153,7 @@ template <class V>
 template <class V>
 struct Two {
     V first, second;
-    Two with(Two o) const {
+    [[gnu::always_inline]] Two with(Two o) const {
         return {least(first, o.first), least(most(first, o.first), least(second, o.second))};
     }
 };
