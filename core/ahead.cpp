@@ -20,7 +20,7 @@ void Engine::look_ahead() const {
             fetch(&spheres_[size_t(i)]);
         });
         each_due(3, [this](int32_t i, const Event& e) { ask_for_cells(i, e); });
-        each_due(2, [this](int32_t, const Event& e) { ask_for_partners_cells(e); });
+        each_due(2, [this](int32_t i, const Event& e) { ask_for_partners_cells(i, e); });
         each_due(1, [this](int32_t i, const Event& e) { ask_for_cell_neighbours(i, e); });
     } else {
         fetch(calendar_.line(4));
@@ -101,10 +101,18 @@ void Engine::ask_for_cells(int i, const Event& e) const {
     if (const int32_t j = sphere_met(e.partner); j >= 0) ask_for_pair(i, j);
 }
 
-void Engine::ask_for_partners_cells(const Event& e) const {
+// The cells that i and j look through if they meet; see look_around_both.
+GridBlock Engine::cells_of_both(int i, int32_t j) const {
+    GridBlock both;
+    const Grid::Cell p = Grid::unpack(events_[size_t(i)].cell),
+                     q = Grid::unpack(events_[size_t(j)].cell);
+    return grid_.around_both(p, q, both) ? both : grid_.around(q);
+}
+
+void Engine::ask_for_partners_cells(int i, const Event& e) const {
     const int32_t j = sphere_met(e.partner);
     if (j < 0 || next_partner(e) == kEscape) return;
-    grid_.fetch_block(grid_.around(Grid::unpack(events_[size_t(j)].cell)));
+    grid_.fetch_block(cells_of_both(i, j));
 }
 
 void Engine::ask_for_cell_neighbours(int i, const Event& e) const {
@@ -116,9 +124,8 @@ void Engine::ask_for_cell_neighbours(int i, const Event& e) const {
         fetch(&glances_[size_t(i)]);  // it is in none of the new cells
         return glances(new_cells(i, e));
     }
-    glances(grid_.around(Grid::unpack(e.cell)));
     const int32_t j = sphere_met(e.partner);
-    if (j >= 0) glances(grid_.around(Grid::unpack(events_[size_t(j)].cell)));
+    glances(j >= 0 ? cells_of_both(i, j) : grid_.around(Grid::unpack(e.cell)));
 }
 
 }  // namespace carom

@@ -25,6 +25,8 @@ Engine::Engine(const StartSpheres& start, double time, const World& world, const
     const size_t n = start.size();
     const Vec3& p = world_.period;
     inverse_period_ = {p.x > 0 ? 1 / p.x : 0, p.y > 0 ? 1 / p.y : 0, p.z > 0 ? 1 / p.z : 0};
+    box_ = Four(p);
+    inverse_box_ = Four(inverse_period_);
     for (const double l : {p.x, p.y, p.z})
         if (l > 0) half_period_ = std::min(half_period_, 0.5 * l);
     periodic_ = half_period_ < kNever;

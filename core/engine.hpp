@@ -32,14 +32,20 @@ namespace carom {
 
 // So many spheres are found in the caches: beyond, looking ahead pays. And so many in the cache
 // next to the processor: beyond, it pays to bring some lines there. Measured on both sides.
-constexpr size_t kListsInCache = 30000, kGridInCache = 64000;
-constexpr size_t kListsAtHand = 6000, kGridAtHand = 12000;
+constexpr size_t kListsInCache = 14000, kGridInCache = 64000;
+constexpr size_t kListsAtHand = 1000, kGridAtHand = 12000;
 
 constexpr int kEndless = 60;  // doublings: such a shell is wider than positions are resolved
 
 // How one sphere moves as seen from another, from time `from` on.
 struct Relative {
     Vec3 r, v, a;
+    double from;
+};
+
+// The same in free flight.
+struct FreeRelative {
+    Four r, v;
     double from;
 };
 
@@ -82,12 +88,13 @@ private:
         Image m;  // of the partner, relative to the anchors
     };
 
-    struct Look {         // half a prediction
-        double leaves;    // its shell or cell at this time
-        int32_t partner;  // may be met first,
-        double first;     // not before this time,
-        double second;    // and any other not before this
-        int axis = 0;     // along which it leaves its cell
+    struct Look {                           // half a prediction
+        static constexpr int kPlaces = 63;  // of a row looked through at once
+        double leaves;                      // its shell or cell at this time
+        int32_t partner;                    // may be met first,
+        double first;                       // not before this time,
+        double second;                      // and any other not before this
+        int axis = 0;                       // along which it leaves its cell
         void add(const Guess& guess, const int32_t* row, double now, double unit) {
             const double t1 = now + guess.first * unit, t2 = now + guess.second * unit;
             if (guess.slot == 0) return;
@@ -150,7 +157,8 @@ private:
     template <class Visit>
     void each_near(int i, const Visit& visit) const;
     int32_t collect(const GridBlock& block, size_t first) const;
-    void look_at_exit(const Motion& at, Grid::Cell cell, Look& out) const;
+    void look_at_exit(int i, Grid::Cell cell, Look& out) const;
+    bool look_around_both(int i, int j, Look& a, Look& b) const;
     void look_through(int i, const GridBlock& block, Look& out) const;
     void change_cell(int i);
     void predict_walls(int i, Next& best) const;
@@ -159,7 +167,8 @@ private:
     void consider_image(int i, int32_t j, const Relative& rel, Image m, Next& best) const;
     bool precedes(int i, const Next& p, const Next& q) const;
     Relative relative(int i, int j) const;
-    double escape_time(int i, const Motion& at) const;
+    FreeRelative free_relative(int i, int j) const;
+    double escape_time(int i) const;
 
     // shells.cpp
     void escape(int i);
@@ -184,7 +193,8 @@ private:
     void ask_for_row_neighbours(int i, const Event& e) const;
     GridBlock new_cells(int i, const Event& e) const;
     void ask_for_cells(int i, const Event& e) const;
-    void ask_for_partners_cells(const Event& e) const;
+    GridBlock cells_of_both(int i, int32_t j) const;
+    void ask_for_partners_cells(int i, const Event& e) const;
     void ask_for_cell_neighbours(int i, const Event& e) const;
 
     // execute.cpp
@@ -195,6 +205,7 @@ private:
     void hit_wall(int32_t i, int k, double t);
     void anchor(int32_t i, const Vec3& x, const Vec3& v, double t);
     void wrap(int32_t i);
+    void anchor_plain(int32_t i, Four x, Four v, double t);
     void wake(int32_t i, const Vec3& impulse, double t);
     bool recent(int32_t i, double t) const;
     void watch(int32_t i, int32_t j, double t, double speed);
@@ -203,6 +214,7 @@ private:
     World world_;
     Tuning tuning_;
     Vec3 inverse_period_;
+    Four box_, inverse_box_;  // the period and its inverse
     bool gravity_ = false, periodic_ = false;
     bool plain_ = false;           // free flight, one image, restitution 1
     bool shells_on_ = true;        // neighbours matter at all
@@ -293,6 +305,14 @@ inline Relative Engine::relative(int i, int j) const {
             pa - qa, from};
 }
 
+inline FreeRelative Engine::free_relative(int i, int j) const {
+    const Sphere &p = spheres_[size_t(i)], &q = spheres_[size_t(j)];
+    const Four pv = velocity_of(p), qv = velocity_of(q);
+    const double from = p.t > q.t ? p.t : q.t;
+    return {(position_of(p) + pv * (from - p.t)) - (position_of(q) + qv * (from - q.t)), pv - qv,
+            from};
+}
+
 inline double Engine::margin(int widening) const {
     return margin_ * std::bit_cast<double>(uint64_t(1023 + widening) << 52);  // 2^widening
 }
@@ -305,28 +325,30 @@ inline Shell Engine::shell(int i) const {
 
 // What changes of a glance: all but the radius, which `focus` gives.
 inline void Engine::refresh(int i) {
-    auto [here, v] = motion(i, now_);
+    const Sphere& s = spheres_[size_t(i)];
+    Four v = velocity_of(s), here = position_of(s) + v * (now_ - s.t);
     if (gravity_) {  // seen by one who falls along, all that fall fly straight on
+        const Motion at = motion(i, now_);
         const double fall = now_ - lens_.start;
-        here -= world_.gravity * (0.5 * fall * fall);
-        v -= world_.gravity * fall;
+        const Vec3 x = at.x - world_.gravity * (0.5 * fall * fall),
+                   u = at.v - world_.gravity * fall;
+        here = Four(x);
+        v = Four(u);
     }
-    const double scale = lens_.scale;
+    here = here.with_fourth(now_ - lens_.start);
     Glance& g = glances_[size_t(i)];
-    const float vx = float(v.x * scale), vy = float(v.y * scale), vz = float(v.z * scale);
+    const Four scaled = v * lens_.scale;
+    const auto vx = float(scaled.x()), vy = float(scaled.y()), vz = float(scaled.z());
     const float v2 = vx * vx + vy * vy + vz * vz;
     bool clear = v2 < lens_.fastest2 && g.r > 0;
-    if (v2 < 0x1p-60f) clear = clear && v.x == 0 && v.y == 0 && v.z == 0;
+    if (v2 < 0x1p-60f) clear = clear && v.x() == 0 && v.y() == 0 && v.z() == 0;
     if (gravity_) clear = clear && falls_[size_t(i)];
     if (!gridded_) {
-        const double far = std::abs(here.x) + std::abs(here.y) + std::abs(here.z);
+        const double far = std::abs(here.x()) + std::abs(here.y()) + std::abs(here.z());
         clear = clear && far < lens_.farthest && rows_.line(i).margin <= 4;
     }
-    using Four [[gnu::vector_size(16)]] = int32_t;
+    const FourInts place = steps(here, lens_.inverse);
     using FourFloats [[gnu::vector_size(16)]] = float;
-    const Four place{steps(here.x, lens_.inverse_period.x), steps(here.y, lens_.inverse_period.y),
-                     steps(here.z, lens_.inverse_period.z),
-                     int32_t((now_ - lens_.start) * lens_.ticks_per_time)};
     const FourFloats flight{clear ? vx : std::numeric_limits<float>::quiet_NaN(), vy, vz, g.r};
     std::memcpy(g.x, &place, sizeof place);  // at once, because it is about to be read at once
     std::memcpy(g.v, &flight, sizeof flight);

@@ -34,10 +34,10 @@ void Engine::execute(int i) {
 // The usual case, and the same bits as below: free flight, one image, restitution 1.
 void Engine::collide_plain(int32_t i, int32_t j, double t) {
     const Sphere &p = spheres_[size_t(i)], &q = spheres_[size_t(j)];
-    const Relative rel = relative(i, j);
-    const Vec3 path = rel.v * (t - rel.from);
-    const Vec3 boxes = periodic_ ? whole_boxes(rel.r + path) : Vec3{};
-    const Vec3 r = rel.r - boxes * world_.period + path;
+    const auto [apart, v, from] = free_relative(i, j);
+    const Four path = v * (t - from);
+    const Four boxes = nearest((apart + path) * inverse_box_);
+    const Vec3 r = (apart - boxes * box_ + path).three();
     const double sigma = p.r + q.r, r2 = norm2(r);
     if (r2 < sigma * sigma * shallow2_) meet_deeper((sigma - std::sqrt(r2)) / sigma);
 
@@ -47,14 +47,17 @@ void Engine::collide_plain(int32_t i, int32_t j, double t) {
         share_a = b.fixed() ? Pair{1, 0} : a.fixed() ? Pair{} : share(a.mass, b.mass);
         share_b = a.fixed() ? Pair{1, 0} : b.fixed() ? Pair{} : share(b.mass, a.mass);
     }
-    const Vec3 change = smooth(r, rel.v, 1);
+    const Vec3 change = smooth(r, v.three(), 1);
     const Image unwrapped =
-        Image{int32_t(boxes.x), int32_t(boxes.y), int32_t(boxes.z)} + a.image - b.image;
+        Image{int32_t(boxes.x()), int32_t(boxes.y()), int32_t(boxes.z())} + a.image - b.image;
     a.last = j, b.last = i;
     a.last_image = nearby(unwrapped), b.last_image = nearby(Image{} - unwrapped);
     if (logging_) log(t, i, j, change * (a.fixed() ? b.mass : a.mass * share_a.hi));
-    anchor(i, p.x + p.v * (t - p.t), p.v + change * share_a, t);
-    anchor(j, q.x + q.v * (t - q.t), q.v - change * share_b, t);
+    const Four kick = Four(change), pv = velocity_of(p), qv = velocity_of(q);
+    anchor_plain(i, position_of(p) + pv * (t - p.t), pv + (kick * share_a.hi + kick * share_a.lo),
+                 t);
+    anchor_plain(j, position_of(q) + qv * (t - q.t), qv - (kick * share_b.hi + kick * share_b.lo),
+                 t);
 }
 
 void Engine::meet_deeper(double depth) {
@@ -163,12 +166,21 @@ void Engine::hit_wall(int32_t i, int k, double t) {
     if (e < 1 && !lasting) watch(i, wall_code(k), t, norm(at.v));
 }
 
+// The same as below, where there is nothing else to do.
+inline void Engine::anchor_plain(int32_t i, Four x, Four v, double t) {
+    const Four boxes = nearest(x * inverse_box_);
+    x = (x - boxes * box_).with_fourth(t);
+    place(spheres_[size_t(i)], x, v);  // of which a kick has changed no radius
+    ++events_[size_t(i)].count;
+    if (boxes.x() == 0 && boxes.y() == 0 && boxes.z() == 0) return;
+    Image& image = bodies_[size_t(i)].image;
+    image = image + to_image(boxes.three());
+}
+
 // The sphere leaves its last event from x with velocity v.
 void Engine::anchor(int32_t i, const Vec3& x, const Vec3& v, double t) {
     Sphere& s = spheres_[size_t(i)];
-    s.x = x;
-    s.v = v;
-    s.t = t;
+    place(s, Four(x, t), Four(v, s.r));
     wrap(i);
     if (gravity_) fresh_[size_t(i)] = 1;
     ++events_[size_t(i)].count;

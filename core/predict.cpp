@@ -3,123 +3,23 @@
 
 namespace carom {
 
-namespace {
-
-// The whole boxes m for which |r - m L| can be at most `reach`, along one axis.
-struct Span {
-    int32_t lo, hi;
-};
-Span images_within(double r, double reach, double inverse_period) {
-    if (inverse_period == 0) return {0, 0};
-    return {int32_t(std::ceil((r - reach) * inverse_period - 1e-9)),
-            int32_t(std::floor((r + reach) * inverse_period + 1e-9))};
-}
-
-}  // namespace
-
-// Order of simultaneous events of sphere i: (i, j, image) with i < j, as for events of different
-// spheres in the calendar.
-bool Engine::precedes(int i, const Next& p, const Next& q) const {
-    if (p.t != q.t) return p.t < q.t;
-    if (q.partner == kNone || q.partner == kEscape) return true;
-    const auto label = [this](int32_t k) { return k >= 0 ? labels_[size_t(k)] : k; };
-    const int32_t own = labels_[size_t(i)], with_p = label(p.partner), with_q = label(q.partner);
-    const int32_t pa = with_p >= 0 ? std::min(own, with_p) : own,
-                  qa = with_q >= 0 ? std::min(own, with_q) : own,
-                  pb = with_p >= 0 ? std::max(own, with_p) : with_p,
-                  qb = with_q >= 0 ? std::max(own, with_q) : with_q;
-    if (pa != qa) return pa < qa;
-    if (pb != qb) return pb < qb;
-    const bool turned = own > with_p;  // the image as the lower of the two sees it
-    const Image a = turned ? q.m : p.m, b = turned ? p.m : q.m;
-    if (a.x != b.x) return a.x < b.x;
-    if (a.y != b.y) return a.y < b.y;
-    return a.z < b.z;
-}
-
-// Two that have just collided cannot meet again in that image before either has had another event,
-// unless something presses them together. Without this, rounding repeats collisions of no speed for
-// ever.
-bool Engine::just_met(int i, int32_t j, Image m) const {
-    const Body &p = bodies_[size_t(i)], &q = bodies_[size_t(j)];
-    return p.last == j && q.last == i && p.last_image == nearby(m + p.image - q.image);
-}
-
-// One pair in one image. r, v, a: relative motion at time `from`, the later of the two anchors.
-void Engine::consider_image(int i, int32_t j, const Relative& rel, Image m, Next& best) const {
-    const auto& [r, v, a, from] = rel;
-    const double sigma = spheres_[size_t(i)].r + spheres_[size_t(j)].r;
-    double wait = kNever;
-    const bool free = norm2(a) == 0;
-    if (free) {
-        wait = contact_time(r, v, sigma);
-        if (wait == kNever) return;
-    }
-    const bool again = just_met(i, j, m);
-    if (free) {
-        if (again) return;
-    } else {
-        const bool here = fresh_[size_t(i)] && fresh_[size_t(j)];  // still where they met
-        wait = Approach(r, v, a, sigma, 1).first(again && here);
-        if (wait == kNever) return;
-    }
-    const Next e{from + wait, j, m};
-    if (precedes(i, e, best)) best = e;
-}
-
-// One pair, in all images in which it can meet.
-void Engine::consider(int i, int32_t j, Next& best) const {
-    ++work_.exact;
-    Relative rel = relative(i, j);
-    if (!periodic_) return consider_image(i, j, rel, {}, best);
-    // The image is chosen from where both are now.
-    const Vec3 here = flown(rel.r, rel.v, rel.a, now_ - rel.from);
-    if (several_images_) {
-        const double reach = spheres_[size_t(i)].r + spheres_[size_t(j)].r + 4 * margin(widest_);
-        if (reach >= half_period_) {
-            const Span x = images_within(here.x, reach, inverse_period_.x),
-                       y = images_within(here.y, reach, inverse_period_.y),
-                       z = images_within(here.z, reach, inverse_period_.z);
-            const Vec3 r = rel.r;
-            for (int32_t mx = x.lo; mx <= x.hi; ++mx)
-                for (int32_t my = y.lo; my <= y.hi; ++my)
-                    for (int32_t mz = z.lo; mz <= z.hi; ++mz) {
-                        const Image m{mx, my, mz};
-                        rel.r = r - shift(m, world_.period);
-                        consider_image(i, j, rel, m, best);
-                    }
-            return;
-        }
-    }
-    const Vec3 m = nearest(here * inverse_period_);
-    rel.r -= m * world_.period;
-    consider_image(i, j, rel, to_image(m), best);
-}
-
-void Engine::predict_walls(int i, Next& best) const {
-    const Sphere& s = spheres_[size_t(i)];
-    const Body& body = bodies_[size_t(i)];
-    if (body.fixed()) return;
-    const Vec3 a = acceleration(i);
-    for (int k = 0; k < int(world_.walls.size()); ++k) {
-        if (k == body.rests_on) continue;
-        const double wait = wall_time(world_.walls[size_t(k)], s, a, body.last == wall_code(k));
-        if (wait == kNever) continue;
-        const Next e{s.t + wait, wall_code(k), {}};
-        if (precedes(i, e, best)) best = e;
-    }
-}
-
 // How long the sphere stays in its shell: exact without gravity, a safe lower bound with it.
-double Engine::escape_time(int i, const Motion& at) const {
+double Engine::escape_time(int i) const {
     const int widening = rows_.line(i).margin;
     if (widening >= kEndless) return kNever;
     const Event& e = events_[size_t(i)];
-    Vec3 d = at.x - Vec3{e.shell_x, e.shell_yz[0], e.shell_yz[1]};
-    d -= nearest(d * inverse_period_) * world_.period;
+    const Sphere& s = spheres_[size_t(i)];
+    Four v = velocity_of(s), x = position_of(s) + v * (now_ - s.t);
+    if (gravity_) {
+        const Motion at = motion(i, now_);
+        x = Four(at.x);
+        v = Four(at.v);
+    }
+    const Four from = x - Four(e.shell_x, e.shell_yz[0], e.shell_yz[1], 0);
+    const Vec3 d = (from - nearest(from * inverse_box_) * box_).three(), u = v.three();
     // A hair early: two that touch just as they leave touching shells must know each other by then.
     const double room = margin(widening) * (1 - 1e-9);
-    const double v2 = norm2(at.v), left2 = room * room - norm2(d);
+    const double v2 = norm2(u), left2 = room * room - norm2(d);
     if (falls_[size_t(i)] && gravity_) {
         const double left = room - norm(d);
         if (left <= 0) return now_;
@@ -130,7 +30,7 @@ double Engine::escape_time(int i, const Motion& at) const {
     if (left2 <= 0) return now_;
     // The sum without cancellation is a factor of either root. No branch: which way cannot be
     // foreseen (dense lists 1.03 times faster).
-    const double b = dot(d, at.v), c = std::abs(b) + std::sqrt(b * b + v2 * left2);
+    const double b = dot(d, u), c = std::abs(b) + std::sqrt(b * b + v2 * left2);
     const double over[2] = {c, left2}, under[2] = {v2, c};
     return now_ + over[b > 0] / under[b > 0];
 }
@@ -148,7 +48,7 @@ void Engine::find_event(int i) {
             for (const int32_t j : row.ids()) fetch(&spheres_[size_t(j)]);
             for (const int32_t j : row.ids()) consider(i, j, best);
         }
-        leaves = escape_time(i, motion(i, now_));
+        leaves = escape_time(i);
     }
     settle_on(i, best.t, best.partner, leaves, 0);
     if (several_images_) images_[size_t(i)] = best.m;
@@ -174,8 +74,11 @@ inline void Engine::settle_on(int i, double t, int32_t partner, double leaves, i
     e.partner_count = events_[size_t(partner >= 0 ? partner : i)].count;
 }
 
-inline void Engine::look_at_exit(const Motion& at, Grid::Cell cell, Look& out) const {
-    const auto [wait, axis] = grid_.crossing(grid_.from_middle(at.x, cell), at.v, cell);
+inline void Engine::look_at_exit(int i, Grid::Cell cell, Look& out) const {
+    const Sphere& s = spheres_[size_t(i)];
+    const Four v = velocity_of(s),
+               here = position_of(s) + v * (now_ - s.t);  // no gravity on a grid
+    const auto [wait, axis] = grid_.crossing(grid_.from_middle(here, cell), v, cell);
     out.leaves = now_ + wait;
     out.axis = axis;
 }
@@ -185,23 +88,45 @@ void Engine::look_through(int i, const GridBlock& block, Look& out) const {
     int32_t* row = near_.id.data();
     for (int k = 1; k <= 16; ++k) row[n + k] = i;
     // The first place of each piece is not looked at: it is the last of the piece before.
-    for (; n > 0; n -= Row::kPlaces, row += Row::kPlaces)
+    for (; n > 0; n -= Look::kPlaces, row += Look::kPlaces)
         out.add(kernels_->first_met(lens_, glances_.data(), glances_[size_t(i)], i, row,
-                                    std::min(n, Row::kPlaces)),
+                                    std::min(n, Look::kPlaces)),
                 row, now_, lens_.time);
+}
+
+// What i and j see who are near each other: most of it is the same. False if they are not.
+bool Engine::look_around_both(int i, int j, Look& a, Look& b) const {
+    GridBlock block;
+    const Grid::Cell p = Grid::unpack(events_[size_t(i)].cell),
+                     q = Grid::unpack(events_[size_t(j)].cell);
+    if (!grid_.around_both(p, q, block)) return false;
+    look_at_exit(i, p, a);
+    look_at_exit(j, q, b);
+    int32_t n = collect(block, 1);
+    int32_t* row = near_.id.data();
+    row[0] = i;
+    for (int k = 1; k <= 16; ++k) row[n + k] = i;
+    const Glance* const me[2] = {&glances_[size_t(i)], &glances_[size_t(j)]};
+    for (; n > 0; n -= Look::kPlaces, row += Look::kPlaces) {
+        Guess met[2];
+        kernels_->first_met_by_two(lens_, glances_.data(), me, row, std::min(n, Look::kPlaces),
+                                   met);
+        a.add(met[0], row, now_, lens_.time);
+        b.add(met[1], row, now_, lens_.time);
+    }
+    return true;
 }
 
 // First half of a prediction: who of the neighbours may be met first, at a glance.
 inline Engine::Look Engine::look(int i) const {
-    const Motion at = motion(i, now_);
     Look out{kNever, kNone, kNever, kNever};
     if (gridded_) {
         const Grid::Cell cell = Grid::unpack(events_[size_t(i)].cell);
-        look_at_exit(at, cell, out);
+        look_at_exit(i, cell, out);
         look_through(i, grid_.around(cell), out);
         return out;
     }
-    out.leaves = escape_time(i, at);
+    out.leaves = escape_time(i);
     for (const Row& part : rows_.of(i)) {
         const auto* row = reinterpret_cast<const int32_t*>(&part);
         out.add(kernels_->first_met(lens_, glances_.data(), glances_[size_t(i)], i, row, part.n),
@@ -278,7 +203,7 @@ void Engine::solve(int i) {
     const double bound = e.t, met = contact(i, j);
     Look seen{kNever, kNone, kNever, kNever};
     if (met >= bound && met <= bound + doubt_) {
-        if (gridded_) look_at_exit(motion(i, now_), Grid::unpack(e.cell), seen);
+        if (gridded_) look_at_exit(i, Grid::unpack(e.cell), seen);
         return settle_on(i, met, j, seen.leaves, seen.axis);
     }
     ++work_.predictions;
@@ -314,10 +239,9 @@ void Engine::open_bucket() {
 void Engine::change_cell(int i) {
     ++work_.shells;
     Event& e = events_[size_t(i)];
-    const Motion at = motion(i, now_);
     const Grid::Cell old = Grid::unpack(e.cell);
     const int axis = Grid::axis(e.cell);
-    const bool up = Grid::upwards(at.v, axis);
+    const bool up = Grid::upwards(spheres_[size_t(i)].v, axis);
     const Grid::Cell cell = grid_.next(old, axis, up);
     grid_.remove(i, old);
     grid_.add(i, cell);
@@ -326,7 +250,7 @@ void Engine::change_cell(int i) {
     if (e.partner == kEscape || stale(e)) return predict(i);
     refresh(i);
     Look seen{kNever, kNone, kNever, kNever};
-    look_at_exit(at, cell, seen);
+    look_at_exit(i, cell, seen);
     look_through(i, grid_.face(cell, axis, up), seen);
     double t = e.contact;
     int32_t partner = e.partner;
@@ -347,15 +271,13 @@ inline double Engine::contact(int i, int32_t j) const {
 // When two in free flight meet in the one image that they can: what `consider` finds for them.
 inline double Engine::free_contact(int i, int32_t j) const {
     ++work_.exact;
-    Relative rel = relative(i, j);
-    Vec3 m;
-    if (periodic_) {
-        m = nearest((rel.r + rel.v * (now_ - rel.from)) * inverse_period_);
-        rel.r -= m * world_.period;
-    }
-    const double wait = contact_time(rel.r, rel.v, spheres_[size_t(i)].r + spheres_[size_t(j)].r);
-    if (bodies_[size_t(i)].last == j && just_met(i, j, to_image(m))) return kNever;
-    return rel.from + wait;
+    auto [r, v, from] = free_relative(i, j);
+    const Four m = nearest((r + v * (now_ - from)) * inverse_box_);
+    r = r - m * box_;
+    const double sigma = spheres_[size_t(i)].r + spheres_[size_t(j)].r;
+    const double wait = contact_time(r.three(), v.three(), sigma);
+    if (bodies_[size_t(i)].last == j && just_met(i, j, to_image(m.three()))) return kNever;
+    return from + wait;
 }
 
 void Engine::predict(int i) {
@@ -376,7 +298,11 @@ void Engine::predict_both(int i, int j) {
     work_.predictions += 2;
     refresh(i);
     refresh(j);
-    const Look a = look(i), b = look(j);
+    Look a{kNever, kNone, kNever, kNever}, b = a;
+    if (!gridded_ || !look_around_both(i, j, a, b)) {
+        a = look(i);
+        b = look(j);
+    }
     decide(i, a);
     decide(j, b);
     profile_.lap(Profile::predict);

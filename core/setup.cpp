@@ -8,8 +8,9 @@ namespace carom {
 namespace {
 
 constexpr double kSpherical = 4.18879020478639098;  // 4 pi / 3
-constexpr double kDilute = 0.3;            // packing fraction up to which a grid is faster,
-constexpr double kDiluteAndFar = 0.18;     // and where spheres come from memory
+// Packing fraction up to which a grid is faster: where lists fit into the caches, where only a grid
+// does, and where neither does.
+constexpr double kDilute = 0.37, kDiluteAndLarge = 0.3, kDiluteAndFar = 0.18;
 constexpr double kPerCell = 0.8;           // spheres in a cell of it
 constexpr size_t kMany = size_t(1) << 22;  // so many take too much memory in lists
 
@@ -40,10 +41,12 @@ Vec3 extent(const Array<Sphere>& spheres, const Vec3& period) {
 
 }  // namespace
 
-// The margin gives a sphere about eleven neighbours, which is near the fastest at every density
-// tried: fewer and shells are remade too often, more and every prediction looks at too many.
+// The margin gives a sphere about thirteen neighbours, which is near the fastest at every density
+// tried: fewer and shells are remade too often, more and every prediction looks at too many. In
+// open space, where spheres part, less: a cloud has more shells to make than events.
 void Engine::choose_shells(const Tuning& tuning) {
-    constexpr double kNeighbours = 11;
+    Vec3 middle, sides;
+    const double neighbours = room(middle, sides) ? 13 : 11;
     if (!shells_on_) return;
     gridded_ = glancing_ = choose_grid(tuning);
     plain_ = gridded_ && world_.restitution == 1 && last_touch_.empty();
@@ -57,7 +60,7 @@ void Engine::choose_shells(const Tuning& tuning) {
         if (s.r > 2 * r) giants += kSpherical * s.r * s.r * s.r;
     }
     const double free = std::max(volume - giants, 0.1 * volume);
-    const double shell = std::cbrt(kNeighbours * free / (kSpherical * double(size())));
+    const double shell = std::cbrt(neighbours * free / (kSpherical * double(size())));
     margin_ = std::clamp(0.5 * shell - r, 0.1 * r, 16 * r);
     if (tuning.margin > 0) margin_ = tuning.margin;
     double most = kNever;
@@ -159,7 +162,9 @@ bool Engine::choose_grid(const Tuning& tuning) {
             volume = std::min(volume, 0.75 * kSpherical * r2 * size.z);
     }
     const double packing = kSpherical * section / volume;
-    const double dilute = spheres_.size() > kGridInCache ? kDiluteAndFar : kDilute;
+    const double dilute = spheres_.size() > kGridInCache    ? kDiluteAndFar
+                          : spheres_.size() > kListsInCache ? kDiluteAndLarge
+                                                            : kDilute;
     if (tuning.grid < 0 && packing > dilute && spheres_.size() < kMany) return false;
     if (largest > 2 * median_radius(spheres_)) return false;
     const double width =

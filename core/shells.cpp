@@ -169,14 +169,13 @@ void Engine::focus() {
     const Vec3& p = world_.period;
     const double open = 0x1p12 * cell_;
     const double period[3] = {p.x > 0 ? p.x : open, p.y > 0 ? p.y : open, p.z > 0 ? p.z : open};
-    lens_.inverse_period = {1 / period[0], 1 / period[1], 1 / period[2]};
+    lens_.inverse = Four{1 / period[0], 1 / period[1], 1 / period[2], 0x1p-2 / epoch};
     double widest = 0;
     for (int a = 0; a < 3; ++a) {
         const double unit = period[a] * 0x1p-32 / length;
         lens_.unit[a] = float(unit);
         widest = std::max(widest, unit);
     }
-    lens_.ticks_per_time = 0x1p30 / epoch;
     lens_.tick = float(0x1p-30 * epoch / lens_.time);
     lens_.blur = float((gravity_ ? 0x1p-13 : 0x1p-15) * cell_ / length + 16 * widest);
     lens_.still = lens_.blur * lens_.blur;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 
 #include "vec3.hpp"
 
@@ -57,6 +58,23 @@ struct alignas(64) Sphere {
     double r;  // radius
 };
 static_assert(sizeof(Sphere) == 64);
+
+// Position and time, and velocity and radius. Written as they are read, four at once: what has just
+// been written in pieces has to reach the cache before it can be read in one.
+inline Four position_of(const Sphere& s) {
+    Four a;
+    std::memcpy(&a, __builtin_assume_aligned(&s, sizeof s), sizeof a);
+    return a;
+}
+inline Four velocity_of(const Sphere& s) {
+    Four a;
+    std::memcpy(&a, __builtin_assume_aligned(&s.v, sizeof a), sizeof a);
+    return a;
+}
+inline void place(Sphere& s, const Four& position, const Four& velocity) {
+    std::memcpy(static_cast<void*>(&s), &position, sizeof position);
+    std::memcpy(static_cast<void*>(&s.v), &velocity, sizeof velocity);
+}
 
 // An image as far as it can matter to two spheres that have not met anybody else since.
 struct NearImage {

@@ -6,6 +6,6 @@
 
 namespace carom::avx512 {
 
-Kernels kernels() { return {"avx512", first_met, near, collect, difference}; }
+Kernels kernels() { return {"avx512", first_met, first_met_by_two, near, collect, difference}; }
 
 }  // namespace carom::avx512

@@ -6,6 +6,6 @@
 
 namespace carom::baseline {
 
-Kernels kernels() { return {"baseline", first_met, near, collect, difference}; }
+Kernels kernels() { return {"baseline", first_met, first_met_by_two, near, collect, difference}; }
 
 }  // namespace carom::baseline

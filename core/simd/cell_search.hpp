@@ -165,11 +165,13 @@ constexpr Fronts kFronts;
 }
 
 #if defined(__AVX512F__)
-// Three cells side by side at once; -1 if one of them is linked to more.
-[[gnu::always_inline]] inline int32_t spheres_in_three(const GridCell* cells, int32_t* out) {
-    const __m512i id = _mm512_maskz_loadu_epi32(0x0fff, cells);
+// Up to four cells side by side at once, whose places are `all`; -1 if one is linked to more.
+[[gnu::always_inline]] inline int32_t spheres_in_run(const GridCell* cells, __mmask16 all,
+                                                     int32_t* out) {
+    const __m512i id = _mm512_maskz_loadu_epi32(all, cells);
+    const __mmask16 free = _mm512_movepi32_mask(id);
     if (_mm512_cmplt_epi32_mask(id, _mm512_set1_epi32(-1)) != 0) return -1;
-    const __mmask16 used = _mm512_mask_cmpge_epi32_mask(0x0fff, id, _mm512_setzero_si512());
+    const __mmask16 used = __mmask16(all & ~free);
     _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(used, id));
     return __builtin_popcount(used);
 }
@@ -177,30 +179,42 @@ constexpr Fronts kFronts;
 
 // How many spheres are in a block of grid cells; -1 if `out` may not have room for all.
 int32_t collect(const GridCell* cells, const GridBlock& block, int32_t* out, int32_t room) {
-    int32_t found = 0;
-    [[maybe_unused]] const bool side_by_side = block.x.n == 3 &&
-                                               block.x.cell[1] == block.x.cell[0] + 1 &&
-                                               block.x.cell[2] == block.x.cell[1] + 1;
-    for (int kz = 0; kz < block.z.n; ++kz) {
-        for (int ky = 0; ky < block.y.n; ++ky) {
-            const int32_t row = block.z.cell[kz] + block.y.cell[ky];
-            if (found + 16 > room) return -1;
+    const GridBlock::Axis x = block.x, y = block.y, z = block.z;  // not to be read again and again
+    int32_t found = 0, width = 0;
+    for (const int32_t c : x.cell) width += c >= 0;
+    if (width == 0) return 0;
 #if defined(__AVX512F__)
-            if (side_by_side) {
-                const int32_t n = spheres_in_three(&cells[row + block.x.cell[0]], out + found);
-                if (n >= 0) {
-                    found += n;
-                    continue;
-                }
+    // Along x the cells are one run, or two where the period ends.
+    int32_t run = width;
+    if (x.cell[width - 1] != x.cell[0] + width - 1)
+        for (run = 1; x.cell[run] == x.cell[run - 1] + 1;) ++run;
+    const auto places = [](int32_t n) { return __mmask16((1u << (4 * n)) - 1); };
+    const __mmask16 one = places(run), two = places(width - run);
+    const bool split = run < width;
+    const int32_t first = x.cell[0], second = x.cell[split ? run : 0];
+#endif
+    for (int kz = 0; kz < 4 && z.cell[kz] >= 0; ++kz) {
+        for (int ky = 0; ky < 4 && y.cell[ky] >= 0; ++ky) {
+            const GridCell* row = cells + (z.cell[kz] + y.cell[ky]);
+            if (found + 32 > room) return -1;
+#if defined(__AVX512F__)
+            int32_t n = spheres_in_run(row + first, one, out + found);
+            if (n >= 0 && split) {
+                const int32_t more = spheres_in_run(row + second, two, out + found + n);
+                n = more < 0 ? -1 : n + more;
+            }
+            if (n >= 0) {
+                found += n;
+                continue;
             }
 #endif
-            for (int kx = 0; kx < block.x.n; ++kx) {
-                const GridCell* cell = &cells[row + block.x.cell[kx]];
+            for (int kx = 0; kx < width; ++kx) {
+                const GridCell* cell = row + x.cell[kx];
                 for (;;) {
                     if (found + 4 > room) return -1;
                     found += spheres_in(*cell, out + found);
                     if (cell->id[3] >= -1) break;
-                    cell = &cells[-2 - cell->id[3]] /* GridCell::link */;
+                    cell = cells + (-2 - cell->id[3]) /* GridCell::link */;
                 }
             }
         }

@@ -58,10 +58,13 @@ struct alignas(16) GridCell {
     static int32_t link(int32_t cell) { return -2 - cell; }  // in the cell of this number
 };
 
-// A block of grid cells: what each coordinate adds to the number of the cell.
+// A block of grid cells: what each coordinate adds to the number of the cell, up to the first that
+// is negative. In the order of space, so that the cells along x lie side by side in memory, but
+// where the period ends.
 struct GridBlock {
-    struct Axis {
-        int32_t n, cell[3];
+    struct alignas(16) Axis {
+        int32_t cell[4];
+        static constexpr int32_t kEnd = -1;
     } x, y, z;
 };
 
@@ -75,6 +78,9 @@ struct Kernels {
     // See pair_search.hpp.
     Guess (*first_met)(const Lens&, const Glance* all, const Glance& me, int32_t self,
                        const int32_t* row, int n);
+    // The same for two who share their neighbours.
+    void (*first_met_by_two)(const Lens&, const Glance* all, const Glance* const me[2],
+                             const int32_t* row, int n, Guess out[2]);
     // See cell_search.hpp.
     int32_t (*near)(const CellLine* lines, const CellBlock&, int32_t* out, int32_t room);
     // See cell_search.hpp.

@@ -41,10 +41,12 @@ using Quad [[gnu::vector_size(16)]] = float;
 #endif
 }
 
-// Half a glance of every fourth neighbour, side by side.
-[[gnu::always_inline]] inline Floats gather(const char* base, const int32_t* id, int half) {
+// Half a glance of every fourth neighbour, side by side. The first of them is `first`.
+[[gnu::always_inline]] inline Floats gather(const char* base, int32_t first, const int32_t* row,
+                                            int half) {
     const auto quad = [&](int k) {
-        return *reinterpret_cast<const Quad*>(base + (int64_t(id[4 * k]) << 5) + 16 * half);
+        const int32_t id = k == 0 ? first : row[4 * k];
+        return *reinterpret_cast<const Quad*>(base + (int64_t(id) << 5) + 16 * half);
     };
 #if CAROM_LANES == 4
     return quad(0);
@@ -86,30 +88,41 @@ using Quad [[gnu::vector_size(16)]] = float;
 constexpr float kAbout = 1 + 0x1p-19f;
 
 constexpr int32_t kNoTime = 0x7f800000;  // infinity, as the bits of a float
-constexpr int32_t kSlots = 31;           // the last bits of a time give way to its place in the row
+constexpr int32_t kSlots = 63;           // the last bits of a time give way to its place in the row
 
-// Lower bounds of the contact times with the neighbours in `id`, as bits, which order like the
-// numbers while these are positive; the last five bits say which slot.
-[[gnu::always_inline]] inline Ints bounds(const Lens& lens, const Glance* all, const Glance& me,
-                                          const int32_t* id, Ints slot) {
+// As many neighbours as there are lanes, and how far each has flown since its glance.
+struct Seen {
+    Words x, y, z;
+    Floats vx, vy, vz, r, flown_x, flown_y, flown_z;
+};
+
+// Those named in `row`, but `first` instead of the first, at time t.
+[[gnu::always_inline]] inline Seen neighbours(const Lens& lens, const Glance* all, int32_t t,
+                                              int32_t first, const int32_t* row) {
     const char* base = reinterpret_cast<const char*>(all);
-    Floats x = gather(base, id, 0), y = gather(base, id + 1, 0), z = gather(base, id + 2, 0),
-           t = gather(base, id + 3, 0);
-    transpose(x, y, z, t);
-    Floats vx = gather(base, id, 1), vy = gather(base, id + 1, 1), vz = gather(base, id + 2, 1),
-           r = gather(base, id + 3, 1);
+    Floats x = gather(base, first, row, 0), y = gather(base, row[1], row + 1, 0),
+           z = gather(base, row[2], row + 2, 0), when = gather(base, row[3], row + 3, 0);
+    transpose(x, y, z, when);
+    Floats vx = gather(base, first, row, 1), vy = gather(base, row[1], row + 1, 1),
+           vz = gather(base, row[2], row + 2, 1), r = gather(base, row[3], row + 3, 1);
     transpose(vx, vy, vz, r);
-    const auto apart = [](int32_t mine, Floats theirs) {
-        return __builtin_convertvector(Ints(uint32_t(mine) - Words(theirs)), Floats);
+    const Floats wait =
+        __builtin_convertvector(Ints(uint32_t(t) - Words(when)), Floats) * lens.tick;
+    return {Words(x), Words(y), Words(z), vx, vy, vz, r, vx * wait, vy * wait, vz * wait};
+}
+
+// Lower bounds of the contact times with these, as bits, which order like the numbers while these
+// are positive; the last six bits say which slot.
+[[gnu::always_inline]] inline Ints bounds(const Lens& lens, const Seen& them, const Glance& me,
+                                          Ints slot) {
+    const auto apart = [](int32_t mine, Words theirs) {
+        return __builtin_convertvector(Ints(uint32_t(mine) - theirs), Floats);
     };
-    const Floats wait = apart(me.t, t) * lens.tick;  // since their glance
-    x = apart(me.x[0], x) * lens.unit[0] - vx * wait;
-    y = apart(me.x[1], y) * lens.unit[1] - vy * wait;
-    z = apart(me.x[2], z) * lens.unit[2] - vz * wait;
-    vx = me.v[0] - vx;
-    vy = me.v[1] - vy;
-    vz = me.v[2] - vz;
-    const Floats s = r + (me.r + lens.blur);
+    const Floats x = apart(me.x[0], them.x) * lens.unit[0] - them.flown_x,
+                 y = apart(me.x[1], them.y) * lens.unit[1] - them.flown_y,
+                 z = apart(me.x[2], them.z) * lens.unit[2] - them.flown_z;
+    const Floats vx = me.v[0] - them.vx, vy = me.v[1] - them.vy, vz = me.v[2] - them.vz;
+    const Floats s = them.r + (me.r + lens.blur);
     const Floats b = x * vx + y * vy + z * vz;
     const Floats v2 = vx * vx + vy * vy + vz * vz;
     const Floats r2 = x * x + y * y + z * z;
@@ -140,7 +153,7 @@ template <class V>
 template <class V>
 struct Two {
     V first, second;
-    Two with(Two o) const {
+    [[gnu::always_inline]] Two with(Two o) const {
         return {least(first, o.first), least(most(first, o.first), least(second, o.second))};
     }
 };
@@ -181,21 +194,42 @@ constexpr Ints kEach = {0, 1, 2, 3, 4, 5, 6, 7};
 constexpr Ints kEach = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 #endif
 
-// `row`: 32 numbers, of which the first is not a neighbour's and those after the n-th neighbour
-// name a sphere that cannot be met, such as the searcher itself.
-Guess first_met(const Lens& lens, const Glance* all, const Glance& me, int32_t self,
-                const int32_t* row, int n) {
-    int32_t head[kLanes];
-    head[0] = self;
-    for (int k = 1; k < kLanes; ++k) head[k] = row[k];
-    const Ints none = Ints{} + kNoTime;
-    Two<Ints> lane{kEach == 0 ? none : bounds(lens, all, me, head, kEach), none};
-    for (int k = kLanes; k <= n; k += kLanes)
-        lane = lane.with({bounds(lens, all, me, row + k, kEach + k), none});
-    const Two<int32_t> two = of_all_lanes(lane);
+[[gnu::always_inline]] inline Guess guess(Two<Ints> lanes) {
+    const Two<int32_t> two = of_all_lanes(lanes);
     // Infinity has no last bits: slot 0 if nobody can be met.
     return {two.first & kSlots, __builtin_bit_cast(float, two.first & ~kSlots),
             __builtin_bit_cast(float, two.second & ~kSlots)};
+}
+
+// `row`: as many numbers as fill registers, of which the first is not a neighbour's and those after
+// the n-th neighbour (n < 64) name a sphere that cannot be met, such as the searcher itself.
+Guess first_met(const Lens& lens, const Glance* all, const Glance& me, int32_t self,
+                const int32_t* row, int n) {
+    const Ints none = Ints{} + kNoTime;
+    const Ints head = bounds(lens, neighbours(lens, all, me.t, self, row), me, kEach);
+    Two<Ints> lane{kEach == 0 ? none : head, none};
+    for (int k = kLanes; k <= n; k += kLanes) {
+        const Seen them = neighbours(lens, all, me.t, row[k], row + k);
+        lane = lane.with({bounds(lens, them, me, kEach + k), none});
+    }
+    return guess(lane);
+}
+
+// Two who look at the same time at the same spheres, themselves among them. These are fetched and
+// turned into columns once, which is half the work. The first of the row need be a sphere's number.
+void first_met_by_two(const Lens& lens, const Glance* all, const Glance* const me[2],
+                      const int32_t* row, int n, Guess out[2]) {
+    const Ints none = Ints{} + kNoTime;
+    const Seen head = neighbours(lens, all, me[0]->t, row[0], row);
+    Two<Ints> p{kEach == 0 ? none : bounds(lens, head, *me[0], kEach), none},
+        q{kEach == 0 ? none : bounds(lens, head, *me[1], kEach), none};
+    for (int k = kLanes; k <= n; k += kLanes) {
+        const Seen them = neighbours(lens, all, me[0]->t, row[k], row + k);
+        p = p.with({bounds(lens, them, *me[0], kEach + k), none});
+        q = q.with({bounds(lens, them, *me[1], kEach + k), none});
+    }
+    out[0] = guess(p);
+    out[1] = guess(q);
 }
 
 }  // namespace

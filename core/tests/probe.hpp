@@ -37,10 +37,11 @@ struct EngineProbe {
         const Engine::Motion at = e.motion(i, now);
         if (e.gridded_) {
             const Grid::Cell cell = Grid::unpack(e.events_[size_t(i)].cell);
-            return now + e.grid_.crossing(e.grid_.from_middle(at.x, cell), at.v, cell).wait;
+            const Four x(at.x), v(at.v);
+            return now + e.grid_.crossing(e.grid_.from_middle(x, cell), v, cell).wait;
         }
         e.now_ = now;
-        return e.escape_time(i, at);
+        return e.escape_time(i);
     }
     static bool neighbours(const Engine& e, int i, int j) {
         if (e.gridded_) {
@@ -69,7 +70,7 @@ struct EngineProbe {
 
     // Until when a prediction of sphere i must hold; it is made anew then.
     static double horizon(const Engine& e, int i) {
-        if (!e.gridded_) return e.escape_time(i, e.motion(i, e.now_));
+        if (!e.gridded_) return e.escape_time(i);
         const double v = norm(e.spheres_[size_t(i)].v);
         return v > 0 ? e.now_ + 64 * e.cell_ / v : kNever;
     }
@@ -88,6 +89,7 @@ struct EngineProbe {
                 e.lens_, e.glances_.data(), e.glances_[size_t(i)], i, row, int(near.size()));
             CHECK(g.slot >= 0 && g.slot <= int(near.size()));
             CHECK(g.first >= 0 && g.first <= g.second);
+            check_two(e, level, i, row, int(near.size()));
             const double first = e.now_ + g.first * e.lens_.time,
                          second = e.now_ + g.second * e.lens_.time;
             for (int k = 1; k <= int(near.size()); ++k) {
@@ -101,6 +103,23 @@ struct EngineProbe {
             }
         }
         return met;
+    }
+
+    // Two who look through a row together see what each sees alone.
+    static void check_two(Engine& e, const std::string& level, int i, const int32_t* row, int n) {
+        const int other = n > 0 ? row[1] : i;
+        e.refresh(other);
+        const Glance* const me[2] = {&e.glances_[size_t(i)], &e.glances_[size_t(other)]};
+        const Kernels& k = kernels(level);
+        Guess both[2];
+        k.first_met_by_two(e.lens_, e.glances_.data(), me, row, n, both);
+        const int self[2] = {i, other};
+        for (const int one : {0, 1}) {
+            const Guess alone =
+                k.first_met(e.lens_, e.glances_.data(), *me[one], self[one], row, n);
+            CHECK(both[one].slot == alone.slot);
+            CHECK(both[one].first == alone.first && both[one].second == alone.second);
+        }
     }
 
     // All spheres of a running engine with the neighbours that they have.

@@ -94,6 +94,43 @@ TEST(the_grid_holds_what_a_map_holds) {
     CHECK(grid.bytes() <= most * 2);  // spare cells are used again
 }
 
+TEST(grid_around_both) {
+    const bool periodic[3] = {true, false, true};
+    const int32_t n[3] = {5, 6, 7};
+    Grid grid;
+    CHECK(grid.reset(1, {}, {5.5, 6.5, 7.5}, periodic, 300));
+    for (int32_t i = 0; i < 300; ++i)
+        grid.add(i, Grid::Cell{{whole(0, 4), whole(0, 5), whole(0, 6)}});
+    const auto all_in = [&](const GridBlock& block, const std::string& level) {
+        std::vector<int32_t> ids(400);
+        ids.resize(size_t(kernels(level).collect(grid.cells(), block, ids.data(), 400)));
+        std::sort(ids.begin(), ids.end());
+        return ids;
+    };
+    for (int k = 0; k < 3000; ++k) {
+        Grid::Cell p{}, q{};
+        bool beside = true;
+        for (int a = 0; a < 3; ++a) {
+            p.c[a] = whole(0, n[a] - 1);
+            q.c[a] =
+                k % 2 == 0 ? whole(0, n[a] - 1) : std::clamp(p.c[a] + whole(-1, 1), 0, n[a] - 1);
+            const int32_t d = std::abs(p.c[a] - q.c[a]);
+            beside = beside && (d <= 1 || (periodic[a] && d == n[a] - 1));
+        }
+        GridBlock both;
+        CHECK(grid.around_both(p, q, both) == beside);
+        if (!beside) continue;
+        for (const std::string& level : simd_levels()) {
+            const std::vector<int32_t> found = all_in(both, level);
+            CHECK(std::adjacent_find(found.begin(), found.end()) == found.end());
+            for (const Grid::Cell& c : {p, q}) {
+                const std::vector<int32_t> one = all_in(grid.around(c), level);
+                CHECK(std::includes(found.begin(), found.end(), one.begin(), one.end()));
+            }
+        }
+    }
+}
+
 TEST(grid_crossings) {
     const bool periodic[3] = {true, false, true};
     Grid grid;
@@ -118,7 +155,7 @@ TEST(grid_crossings) {
             const double t = v[a] == 0 ? kNever : (low[a] + behind * width[a] - x[a]) / v[a];
             if (t < wait) wait = t, axis = a;
         }
-        const auto c = grid.crossing(grid.from_middle(at, cell), by, cell);
+        const auto c = grid.crossing(grid.from_middle(Four(at), cell), Four(by), cell);
         if (wait == kNever) {
             CHECK(c.wait == kNever);
             continue;
@@ -127,7 +164,8 @@ TEST(grid_crossings) {
         if (c.axis != axis) continue;  // through an edge, by rounding
         const Grid::Cell next = grid.next(cell, axis, v[axis] > 0);
         CHECK(grid.holds(at + by * c.wait, cell) && grid.holds(at + by * c.wait, next));
-        CHECK(grid.crossing(grid.from_middle(at + by * c.wait, next), by, next).wait >= 0);
+        CHECK(grid.crossing(grid.from_middle(Four(at + by * c.wait), next), Four(by), next).wait >=
+              0);
     }
     // Along an axis with walls the cells of the border go on for ever.
     for (const double far : {1e9, 1e300}) {

@@ -209,7 +209,7 @@ CLIFFS = (
         collisions=0,
         until=100.0,
         uniform="fluid-32000-0.05",
-        bound=8.0,
+        bound=10.0,
         why="a hot ball flies apart in open space, to some 1 000 times its volume: collisions end, "
         "but each time it has doubled every sphere has left a dozen shells",
     ),
