@@ -125,7 +125,7 @@ BOUNDS: dict[str, dict[str, Any]] = {
     },
     "fluid-10000000-0.25": {
         "uniform": "fluid-1000000-0.25",
-        "bound": 1.5,
+        "bound": 2.0,
         "most_memory": 3e9,
         "why": "nothing is in any cache, and 10 million spheres must fit into 3 GB",
     },
@@ -163,7 +163,7 @@ CLIFFS = (
         collisions=1_000_000,
         warm_up=5_000_000,
         uniform="fluid-1000000-0.1",
-        bound=3.0,
+        bound=3.5,
         why="one sphere 100 times as wide touches thousands of the others at any time",
     ),
     Case(
