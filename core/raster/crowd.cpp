@@ -35,10 +35,12 @@ Crowd::Crowd(const Vec3& low, const Vec3& high, double cell, const Vec3& up) {
 void Crowd::fill(const std::vector<Vec3>& position, const std::vector<double>& radius, size_t n) {
     spread(position, radius, n);
     std::fill(light_.begin(), light_.end(), 0.0f);
+    float before = 0;
     for (int k = 0; k < 3; ++k) {
         const float step = kLeak * float(size_[k]) / float(cells_[k]);
-        for (size_t c = 0; c < hidden_.size(); ++c)
+        for (size_t c = 0; c < hidden_.size() && step != before; ++c)
             passed_[c] = std::exp(-0.5f * step * hidden_[c]);  // half a cell
+        before = step;
         sweep(k, true, k != axis_ ? kSide : upwards_ ? kBelow : kAbove);
         sweep(k, false, k != axis_ ? kSide : upwards_ ? kAbove : kBelow);
     }

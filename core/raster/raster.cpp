@@ -168,9 +168,22 @@ Span Raster::columns_of(int band) const {
     return columns;
 }
 
+// What is the same in the picture without spheres.
+void Raster::copy_beside(uint8_t* bytes) const {
+    if (empty_.empty()) return;
+    const int from = 3 * frame_.columns.first, to = 3 * (frame_.columns.last + 1);
+    const int all = 3 * view_.width;
+    for (int row = frame_.rows.first; row <= frame_.rows.last; ++row) {
+        const size_t at = size_t(all) * row;
+        std::copy_n(&empty_[at], from, bytes + at);
+        std::copy_n(empty_.data() + at + to, all - to, bytes + at + to);
+    }
+}
+
 void Raster::paint(int band, uint8_t* bytes) {
     frame_.rows = rows_of(band);
     frame_.columns = columns_of(band);
+    copy_beside(bytes);
     if (frame_.columns.empty()) return;
     const int from = 3 * frame_.columns.first, count = 3 * (frame_.columns.last + 1) - from;
     for (int row = frame_.rows.first; row <= frame_.rows.last; ++row)
@@ -214,7 +227,6 @@ void Raster::draw(const std::vector<Vec3>& position, const std::vector<double>& 
         if (look_.shadows) casters_.find(balls_, look_, view_.direction(look_.lamp));
         for (Wall& wall : walls_) wall.light(balls_, shadows_, spots_);
     }
-    std::copy(empty_.begin(), empty_.end(), bytes);
     for (int band = 0; band * band_ < view_.height; ++band) paint(band, bytes);
 }
 

@@ -32,6 +32,7 @@ private:
     void sort_into_bands();
     Span rows_of(int band) const;
     Span columns_of(int band) const;
+    void copy_beside(uint8_t* bytes) const;
     void paint(int band, uint8_t* bytes);
     void shade(int k);
     void uncover();
